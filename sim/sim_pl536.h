@@ -50,7 +50,9 @@ typedef struct sim_pl_options {
     bool amb84_clear_cbctrl;     /**< PL-AMB-84: expiry clears CB_CTRL */
     bool amb86_sleep_stops_cb;   /**< PL-AMB-86: SLEEP and TSD stop balancing */
     bool amb100_user_readonly;   /**< PL-AMB-100: USERn cannot be written */
-    /* the owner of the model may add further readings here */
+    double reg50_v;              /**< REG50 as GPAI reference (PL-AMB-57); 0 = 5.0 V */
+    double wire_drift;           /**< how far an open sense wire drifts, see sim_pl536_analog.c; 0 = 0.5 */
+    bool wire_field_pattern;     /**< open wires as seen on real hardware: the lower cell reads 0, the sum is too low */
 } sim_pl_options;
 
 #include "sim_pl536_state.h" /* struct sim_pl: complete, so that the caller can own it; its members are private */
@@ -76,7 +78,18 @@ sim_misuse *sim_pl_misuse(sim_pl *s);
 void sim_pl_spi(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n);
 /** The same, ending after `bits` clocks (not necessarily on a byte boundary). */
 void sim_pl_spi_bits(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits);
-/** For strict timing and waveforms: the clock and the CS high time before the next packet. */
+/** What a packet looks like in time, for sim_pl_spi_timed(). */
+typedef struct sim_pl_spi_timing {
+    uint32_t clock_hz;
+    uint32_t duty_percent;   /**< high phase of the clock */
+    uint32_t cs_high_ns;     /**< CS_H high before this packet */
+    uint32_t cs_lead_ns;     /**< CS_H low to the first clock edge */
+    uint32_t cs_lag_ns;      /**< last clock edge to CS_H high */
+    uint32_t longest_pause_ns; /**< between two bytes */
+} sim_pl_spi_timing;
+/** As sim_pl_spi(); with the option strict_timing the timing is judged (PL-SPI-12, PL-AMB-20), never the packet's effect changed. */
+void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n, const sim_pl_spi_timing *timing);
+/** The clock, for waveforms and (with strict_timing) for the judge, which then also wants 3 us of simulated time between packets. */
 void sim_pl_set_spi_clock(sim_pl *s, uint32_t hz);
 /** CONV_H. */
 void sim_pl_set_conv(sim_pl *s, bool level);
