@@ -98,5 +98,9 @@ fresh
 rm "$tree/docs/requirements/list.md"
 expect 1 'no requirement rows|unknown ID' 'no rows at all'
 
+fresh
+ln -s nowhere "$tree/tests/unit/a/test_z.c"
+expect 1 'could not be read to its end' 'a file that cannot be read'
+
 rm -rf "$tree"
 exit $failed
