@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file ps_scenario.h
+ * A scenario with every value checked: what is simulated, what happens, what is expected. Filled before anything runs.
+ */
+#ifndef PS_SCENARIO_H
+#define PS_SCENARIO_H
+
+#include "bqhost/app.h"
+#include "bqhost/bq76pl536.h"
+#include "ps_ini.h"
+#include "sim_cells.h"
+#include "sim_cells_load.h"
+
+#define PS_EVENTS 256
+#define PS_EXPECTS 128
+#define PS_EXPECT_TEXT PS_INI_TEXT
+
+typedef enum ps_action_kind {
+    PS_ACT_CELL_VOLTS,
+    PS_ACT_CELL_FREE,
+    PS_ACT_SENSOR,
+    PS_ACT_CURRENT,
+    PS_ACT_CURRENT_FILE,
+    PS_ACT_REQUEST,   /**< on */
+    PS_ACT_BREAK,
+    PS_ACT_MEND,
+    PS_ACT_DEVICE,    /**< on */
+    PS_ACT_WIRE,      /**< on = open */
+    PS_ACT_SPI_FLIP,
+    PS_ACT_BUS_DEAD,  /**< on = ff */
+    PS_ACT_BUS_FREE,
+    PS_ACT_MCU_RESET,
+    PS_ACT_WELD
+} ps_action_kind;
+
+typedef struct ps_event {
+    uint64_t t;
+    ps_place at;
+    ps_action_kind kind;
+    int n;
+    bool on;
+    double value;
+} ps_event;
+
+typedef enum ps_expect_kind {
+    PS_EXP_STATE,      /**< state at t */
+    PS_EXP_FAULT,      /**< fault (item) within t of t0 */
+    PS_EXP_NO_FAULT_BEFORE,
+    PS_EXP_NO_FAULTS,
+    PS_EXP_DISCOVERED, /**< n devices at t */
+    PS_EXP_SPREAD,     /**< below value mV at t */
+    PS_EXP_SOC,
+    PS_EXP_MEASUREMENT,
+    PS_EXP_OUTPUTS_OFF, /**< within t of t0 */
+    PS_EXP_RECOVERED,  /**< at t */
+    PS_EXP_MISUSE_NONE,
+    PS_EXP_SPEED
+} ps_expect_kind;
+
+/** What a fault is tied to. */
+typedef enum ps_item { PS_ITEM_ANY, PS_ITEM_CELL, PS_ITEM_DEVICE, PS_ITEM_SENSOR } ps_item;
+
+typedef struct ps_expect {
+    ps_expect_kind kind;
+    ps_place at;
+    char text[PS_EXPECT_TEXT];
+    int id;        /**< state or fault number, device count */
+    ps_item item;
+    int n;
+    uint64_t t, t0;
+    double value;
+} ps_expect;
+
+typedef struct ps_scenario {
+    int devices, cells;
+    sim_cells_config world;
+    sim_ocv ocv;
+    sim_cells_load load;
+    bool has_load_file;
+    bool request_on;
+    bq_app_config app;
+    bq76pl536_config driver;
+    uint8_t cells_of[BQ76PL536_MAX_DEVICES];
+    ps_place pack_at; /**< for errors that concern the whole configuration */
+    uint64_t duration, period;
+    uint64_t seed;
+    int events;
+    ps_event event[PS_EVENTS];
+    int expects;
+    ps_expect expect[PS_EXPECTS];
+} ps_scenario;
+
+/** Where files named in a scenario are looked for, in this order; NULL entries are skipped. */
+typedef struct ps_search {
+    char scenario_dir[PS_PATH];
+    char data_dir[PS_PATH];
+} ps_search;
+
+/** What the command line overrides. */
+typedef struct ps_override {
+    uint64_t duration; /**< 0 = as the scenario says */
+    const char *current_file;
+    bool has_seed;
+    uint64_t seed;
+} ps_override;
+
+/** Interprets all of `ini`. 0, or -1 with the error recorded. */
+int ps_scenario_build(ps_scenario *s, ps_ini *ini, const ps_search *search, const ps_override *override, ps_error *e);
+
+/** One event `key = value`, one expectation line. 0 or -1. */
+int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at, ps_error *e);
+int ps_expect_parse(ps_expect *x, const ps_scenario *s, const char *text, ps_place at, ps_error *e);
+
+/** The latest moment an expectation looks at; 0 for those judged at the end. */
+uint64_t ps_expect_deadline(const ps_expect *x);
+
+/** Defaults of a chemistry, then one key of [limits]. ps_limit_set returns 0, 1 for an unknown key, -1 with the error. */
+void ps_limits_default(ps_scenario *s, bool lfp);
+int ps_limit_set(ps_scenario *s, const char *key, const char *value, ps_place at, ps_error *e);
+/** Name of key i, NULL after the last. */
+const char *ps_limit_name(int i);
+
+/** Names of the scenario language for states; -1 when unknown. */
+int ps_state_number(const char *name);
+const char *ps_state_name(int state);
+int ps_fault_number(const char *name);
+
+#endif
