@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by test.sh and demo.sh: sees to compiler, CMake and a build program, and sets
+#   root        top of the tree
+#   jobs        parallel jobs
+#   generator   Ninja or Unix Makefiles
+# Installs what is missing when it may (root or password-less sudo, and apt-get); otherwise says what to install and exits 1.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+export TMPDIR="$root/build/tmp"
+mkdir -p "$TMPDIR"
+cmake_least=3.22
+
+have() { command -v "$1" >/dev/null 2>&1; }
+
+cmake_works() {
+    have cmake || return 1
+    local version
+    version=$(cmake --version | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+    [ "$(printf '%s\n%s\n' "$cmake_least" "$version" | sort -V | head -n 1)" = "$cmake_least" ]
+}
+
+compiler_works() {
+    have gcc && have ar && printf '#include <stdio.h>\nint main(void) { return 0; }\n' |
+        gcc -x c - -o "$TMPDIR/compiler-works" 2>/dev/null
+}
+
+missing() { # names of the Debian packages that are still needed
+    compiler_works || echo gcc libc6-dev
+    cmake_works || echo cmake
+    have ninja || have make || echo ninja-build
+}
+
+install_packages() { # install_packages NAME...: 1 if not allowed, the status of apt-get otherwise
+    local as=()
+    have apt-get || return 1
+    if [ "$(id -u)" != 0 ]; then
+        have sudo && sudo -n true 2>/dev/null || return 1
+        as=(sudo -n)
+    fi
+    echo "installing: $*"
+    "${as[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq &&
+        "${as[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+need_tools() {
+    local packages
+    packages=$(missing | tr '\n' ' ')
+    if [ -n "$packages" ]; then
+        # shellcheck disable=SC2086
+        install_packages $packages || true
+        packages=$(missing | tr '\n' ' ')
+    fi
+    if [ -n "$packages" ]; then
+        {
+            echo "Missing, and not installed by this script: $packages"
+            echo "Needed: gcc with the C library's headers, cmake $cmake_least or newer, ninja or make. On Debian or Ubuntu:"
+            echo "    apt-get install gcc libc6-dev cmake ninja-build"
+        } >&2
+        exit 1
+    fi
+    if have ninja; then generator=Ninja; else generator="Unix Makefiles"; fi
+}
+
+# A build tree of another generator or another place cannot be used again.
+fresh_if_foreign() { # fresh_if_foreign BUILD_DIRECTORY
+    local cache=$1/CMakeCache.txt
+    [ -f "$cache" ] || return 0
+    if ! grep -qxF "CMAKE_GENERATOR:INTERNAL=$generator" "$cache" || ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$cache"; then
+        rm -rf "$1"
+    fi
+}
+
+build_preset() { # build_preset PRESET [OPTION...] [-- TARGET...]
+    local preset=$1 options=() targets=()
+    shift
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
+    [ $# -eq 0 ] || { shift; targets=(--target "$@"); }
+    fresh_if_foreign "$root/build/$preset"
+    (cd "$root" && cmake --preset "$preset" -G "$generator" "${options[@]}") >"$TMPDIR/$preset.log" 2>&1 &&
+        cmake --build "$root/build/$preset" -j "$jobs" "${targets[@]}" >>"$TMPDIR/$preset.log" 2>&1 && return 0
+    tail -n 60 "$TMPDIR/$preset.log" >&2
+    return 1
+}

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds everything and runs every test: debug, then under AddressSanitizer and UndefinedBehaviorSanitizer, then a clang
+# build with all warnings as errors, then the requirement trace. Installs what is missing when it may.
+#   tools/test.sh [--quick]     --quick: the debug suite and the trace only
+# Works from any directory, writes only into build/ of the tree. The last line is "N passed, N failed".
+set -u
+quick=0
+case ${1:-} in
+'') ;;
+--quick) quick=1 ;;
+*) sed -n '3,7s/^# \{0,1\}//p' "$0"; [ "$1" = --help ] && exit 0 || exit 2 ;;
+esac
+. "$(dirname "${BASH_SOURCE[0]}")/needs.sh"
+need_tools
+
+passed=0
+failed=0
+skipped=()
+started=$SECONDS
+say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
+count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
+skip() { skipped+=("$*"); echo "SKIPPED: $*"; }
+
+# build NAME ARGUMENT...: one build counts as one check
+build() {
+    say "build $1"
+    build_preset "$@"
+    local status=$?
+    count $status
+    [ $status = 0 ] && echo "built" || echo "BUILD FAILED: $1"
+    return $status
+}
+
+# suite PRESET: every test of a build, counted one by one
+suite() {
+    say "tests $1"
+    local log=$TMPDIR/ctest-$1.log
+    ctest --test-dir "$root/build/$1" -j "$jobs" --output-on-failure --no-tests=error 2>&1 | tee "$log" | grep -v -e '^ *Start ' -e ' Passed '
+    # "100% tests passed, 0 tests failed out of 12"; a suite that did not get so far is one failure
+    local line bad all
+    line=$(grep -E '^[0-9]+% tests passed' "$log") || { failed=$((failed + 1)); return; }
+    bad=$(sed -E 's/.* ([0-9]+) tests failed.*/\1/' <<<"$line")
+    all=$(sed -E 's/.*out of ([0-9]+).*/\1/' <<<"$line")
+    passed=$((passed + all - bad))
+    failed=$((failed + bad))
+    while read -r name; do skip "$name in $1: see build/$1/Testing/Temporary/LastTest.log"; done \
+        < <(sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*Skipped.*/\1/p' "$log")
+}
+
+build dev && suite dev
+
+if [ $quick = 1 ]; then
+    skip "sanitizers and clang: --quick"
+else
+    if echo 'int main(void) { return 0; }' | gcc -x c - -fsanitize=address,undefined -o "$TMPDIR/sanitizers" 2>/dev/null &&
+        "$TMPDIR/sanitizers" 2>/dev/null; then
+        build asan && suite asan
+    else
+        skip "AddressSanitizer and UBSan: gcc's sanitizer libraries are missing or do not run here"
+    fi
+    if have clang; then
+        build clang
+    else
+        skip "clang build: clang is not installed"
+    fi
+fi
+
+say "requirement trace"
+"$root/tools/trace" check
+count $?
+
+echo
+for text in ${skipped[@]+"${skipped[@]}"}; do echo "skipped: $text"; done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
