@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The faults: their names, what they forbid, their order, and the way each becomes active and clears. */
+#include "pack_internal.h"
+
+typedef struct fault_rule {
+    const char *name;
+    uint8_t rank;         /* 0 = shown first */
+    bool stops_charge;    /* with separate paths; with one contactor every fault stops both */
+    bool stops_discharge;
+    bool latched;         /* clears only while the request is off */
+} fault_rule;
+
+static const fault_rule rules[BQ_FAULT_COUNT] = {
+    /*                           name           rank charge discharge latched */
+    [BQ_FAULT_CHIP] =          { "chip",           0, true,  true,  false },
+    [BQ_FAULT_CONTACTOR] =     { "contactor",      1, true,  true,  true  },
+    [BQ_FAULT_OVERCURRENT] =   { "overcurrent",    2, true,  true,  false },
+    [BQ_FAULT_CHIP_CELL_OV] =  { "chip_cell_ov",   3, true,  false, false },
+    [BQ_FAULT_CELL_OV] =       { "cell_ov",        4, true,  false, false },
+    [BQ_FAULT_CHIP_OVERTEMP] = { "chip_overtemp",  5, true,  true,  false },
+    [BQ_FAULT_OVERTEMP] =      { "overtemp",       6, true,  true,  false },
+    [BQ_FAULT_CHIP_CELL_UV] =  { "chip_cell_uv",   7, false, true,  false },
+    [BQ_FAULT_CELL_UV] =       { "cell_uv",        8, false, true,  false },
+    [BQ_FAULT_UNDERTEMP] =     { "undertemp",      9, true,  false, false },
+    [BQ_FAULT_OPEN_WIRE] =     { "open_wire",     10, true,  true,  false },
+    [BQ_FAULT_COMM_LOSS] =     { "comm_loss",     11, true,  true,  false },
+    [BQ_FAULT_NO_READING] =    { "no_reading",    12, true,  true,  false },
+    [BQ_FAULT_SENSOR] =        { "sensor",        13, true,  true,  false },
+    [BQ_FAULT_SELF_TEST] =     { "self_test",     14, true,  true,  false },
+    [BQ_FAULT_CONFIG] =        { "config",        15, true,  true,  false },
+    [BQ_FAULT_IMBALANCE] =     { "imbalance",     16, true,  true,  false },
+};
+
+const char *bq_pack_fault_name(bq_pack_fault fault)
+{
+    return (unsigned)fault < BQ_FAULT_COUNT ? rules[fault].name : "?";
+}
+
+bool bq_pack_fault_stops_charge(bq_pack_fault fault)
+{
+    return (unsigned)fault < BQ_FAULT_COUNT && rules[fault].stops_charge;
+}
+
+bool bq_pack_fault_stops_discharge(bq_pack_fault fault)
+{
+    return (unsigned)fault < BQ_FAULT_COUNT && rules[fault].stops_discharge;
+}
+
+bq_pack_fault bq_pack_cause(const bq_pack *p)
+{
+    bq_pack_fault cause = BQ_FAULT_COUNT;
+
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        if (p->fault[f].active && (cause == BQ_FAULT_COUNT || rules[f].rank < rules[cause].rank)) {
+            cause = (bq_pack_fault)f;
+        }
+    }
+    return cause;
+}
+
+static void trip(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t now_ms)
+{
+    bq_pack_fault_record *r = &p->fault[f];
+
+    if (r->count == 0u) {
+        r->first_ms = now_ms;
+    }
+    r->count = bq_pack_add_ms(r->count, 1u);
+    r->trip_ms = now_ms;
+    r->value = c->value;
+    r->cell = c->cell;
+    r->device = c->device;
+    r->sensor = c->sensor;
+    r->wire = c->wire;
+    r->active = true;
+    p->faults |= (uint32_t)1u << f;
+    bq_pack_log(p, now_ms, BQ_EVENT_FAULT, (uint8_t)f,
+                r->cell != 0u     ? r->cell
+                : r->sensor != 0u ? r->sensor
+                                  : r->device);
+}
+
+/* The cause is present: debounce, then active. timer_ms counts from the step that saw it first. */
+static void present(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t now_ms, uint32_t dt_ms)
+{
+    bq_pack_fault_record *r = &p->fault[f];
+
+    r->timer_ms = r->pending ? bq_pack_add_ms(r->timer_ms, dt_ms) : 0u;
+    r->pending = true;
+    r->clearing = false;
+    if (!r->active && r->timer_ms >= c->debounce_ms) {
+        trip(p, f, c, now_ms);
+    }
+    if (r->active) {
+        r->last_ms = now_ms;
+        r->hold = BQ_HOLD_CONDITION;
+    }
+}
+
+static bq_pack_hold reason(const bq_pack *p, bq_pack_fault f, const bq_pack_input *in, bool clear)
+{
+    if (!clear) {
+        return BQ_HOLD_HYSTERESIS;
+    }
+    if (!p->summary.complete) {
+        return BQ_HOLD_UNKNOWN;
+    }
+    if (rules[f].latched && in->request != BQ_REQUEST_OFF) {
+        return BQ_HOLD_REQUEST;
+    }
+    return BQ_HOLD_TIME;
+}
+
+/* The cause is gone: an active fault clears after recover_ms without any reason to hold it, in a step with a new picture. */
+static void gone(bq_pack *p, bq_pack_fault f, const bq_picture *v, const bq_pack_input *in, bool clear,
+                 uint32_t now_ms, uint32_t dt_ms)
+{
+    bq_pack_fault_record *r = &p->fault[f];
+
+    r->pending = false;
+    if (!r->active) {
+        return;
+    }
+    r->hold = reason(p, f, in, clear);
+    if (r->hold != BQ_HOLD_TIME) {
+        r->clearing = false;
+        return;
+    }
+    r->timer_ms = r->clearing ? bq_pack_add_ms(r->timer_ms, dt_ms) : 0u;
+    r->clearing = true;
+    if (v->fresh && r->timer_ms >= p->config.recover_ms) {
+        r->active = false;
+        r->clearing = false;
+        r->hold = BQ_HOLD_NONE;
+        p->faults &= ~((uint32_t)1u << f);
+        bq_pack_log(p, now_ms, BQ_EVENT_RECOVERED, (uint8_t)f, 0);
+    }
+}
+
+void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_pack_input *in, const bq_condition *c,
+                           uint32_t now_ms, uint32_t dt_ms)
+{
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        if (c[f].broken) {
+            present(p, (bq_pack_fault)f, &c[f], now_ms, dt_ms);
+        } else {
+            gone(p, (bq_pack_fault)f, v, in, c[f].clear, now_ms, dt_ms);
+        }
+    }
+}
+
+bool bq_pack_pending(const bq_pack *p)
+{
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        if (p->fault[f].pending) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The pack controller's step: look, judge, change state, decide. */
+#include "pack_internal.h"
+#include <string.h>
+
+const char *bq_pack_state_name(bq_pack_state_id state)
+{
+    static const char *const names[] = {"init", "self-test", "standby", "on", "fault", "sleep"};
+
+    return (unsigned)state < sizeof names / sizeof names[0] ? names[state] : "?";
+}
+
+const char *bq_pack_hold_name(bq_pack_hold hold)
+{
+    static const char *const names[] = {"none", "condition", "hysteresis", "unknown", "request", "time"};
+
+    return (unsigned)hold < sizeof names / sizeof names[0] ? names[hold] : "?";
+}
+
+void bq_pack_log(bq_pack *p, uint32_t now_ms, bq_pack_event_kind kind, uint8_t code, uint16_t where)
+{
+    bq_pack_event *e = &p->events[p->event_count % BQ_PACK_EVENTS];
+
+    e->t_ms = now_ms;
+    e->kind = (uint8_t)kind;
+    e->code = code;
+    e->where = where;
+    p->event_count++;
+}
+
+bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config)
+{
+    bq_status status = p == NULL ? BQ_E_ARG : bq_pack_config_validate(config, NULL);
+
+    if (status != BQ_OK) {
+        return status;
+    }
+    memset(p, 0, sizeof *p);
+    p->config = *config;
+    p->state = BQ_PACK_INIT;
+    p->summary.soc_permille = -1;
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        p->fault[f].wire = -1;
+    }
+    bq_soc_init(&p->soc);
+    return BQ_OK;
+}
+
+/* New flags are logged once each. */
+static void log_chip_flags(bq_pack *p, const bq_picture *v, uint32_t now_ms)
+{
+    for (uint16_t m = 0; v->s != NULL && m < v->s->module_count; m++) {
+        const uint16_t flags = v->s->modules[m].faults;
+        const uint16_t risen = (uint16_t)(flags & (uint16_t)~p->flags[m]);
+        if (risen != 0u) {
+            bq_pack_log(p, now_ms, BQ_EVENT_CHIP_FLAGS, (uint8_t)(m + 1u), risen);
+        }
+        p->flags[m] = flags;
+    }
+}
+
+/* Whatever was measured before the sleep does not count any more. Active faults stay. */
+static void wake(bq_pack *p)
+{
+    p->started = false;
+    memset(p->blind_ms, 0, sizeof p->blind_ms);
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        p->fault[f].pending = false;
+        p->fault[f].clearing = false;
+    }
+}
+
+/* The transition table of pack.h, line by line. */
+static bq_pack_state_id next_state(const bq_pack *p, const bq_pack_input *in)
+{
+    const bool up = in->monitor == BQ_MONITOR_UP;
+    const bool passed = in->self_test == BQ_TEST_PASSED;
+    const bool agrees = in->contactor_mismatch_ms == 0u;
+
+    if (p->state == BQ_PACK_SLEEP) {
+        return in->request == BQ_REQUEST_SLEEP ? BQ_PACK_SLEEP : BQ_PACK_INIT;
+    }
+    if (in->request == BQ_REQUEST_SLEEP && !p->outputs_on && agrees) {
+        return BQ_PACK_SLEEP;
+    }
+    if (p->faults != 0u) {
+        return BQ_PACK_FAULT;
+    }
+    switch (p->state) {
+    case BQ_PACK_FAULT:
+        return up && passed ? BQ_PACK_STANDBY : BQ_PACK_INIT;
+    case BQ_PACK_INIT:
+        return up && p->started ? BQ_PACK_SELF_TEST : BQ_PACK_INIT;
+    case BQ_PACK_SELF_TEST:
+        if (!up) {
+            return BQ_PACK_INIT;
+        }
+        return passed && p->summary.complete ? BQ_PACK_STANDBY : BQ_PACK_SELF_TEST;
+    case BQ_PACK_STANDBY:
+        if (!up || !passed) {
+            return BQ_PACK_INIT;
+        }
+        return in->request == BQ_REQUEST_ON && p->summary.complete && !bq_pack_pending(p) && agrees
+                   ? BQ_PACK_ON
+                   : BQ_PACK_STANDBY;
+    default:
+        return in->request == BQ_REQUEST_ON ? BQ_PACK_ON : BQ_PACK_STANDBY;
+    }
+}
+
+static void change_state(bq_pack *p, const bq_pack_input *in, uint32_t now_ms)
+{
+    const bq_pack_state_id next = next_state(p, in);
+
+    if (next != p->state) {
+        if (p->state == BQ_PACK_SLEEP) {
+            wake(p);
+        }
+        p->state = next;
+        p->state_ms = now_ms;
+        bq_pack_log(p, now_ms, BQ_EVENT_STATE, (uint8_t)next, 0);
+    }
+}
+
+/* Some active fault forbids this direction. */
+static bool stopped(const bq_pack *p, bool (*stops)(bq_pack_fault))
+{
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
+        if (p->fault[f].active && (!p->config.separate_paths || stops((bq_pack_fault)f))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* In the state "on" both directions conduct. In "fault" a direction may stay on if it was, never come back. */
+static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
+{
+    const bool on = p->state == BQ_PACK_ON;
+    const bool may_stay = p->state == BQ_PACK_FAULT && in->request == BQ_REQUEST_ON;
+
+    p->drive_charge = on || (may_stay && p->drive_charge && !stopped(p, bq_pack_fault_stops_charge));
+    p->drive_discharge = on || (may_stay && p->drive_discharge && !stopped(p, bq_pack_fault_stops_discharge));
+    p->outputs_on = p->drive_charge || p->drive_discharge;
+    a->charge_on = p->drive_charge;
+    a->discharge_on = p->drive_discharge;
+    a->sleep = p->state == BQ_PACK_SLEEP;
+}
+
+/* Flags seen here are logged and judged in this same step, so they may be cleared (PL-SEQ-08-06). */
+static bool flags_present(const bq_pack *p, const bq_picture *v)
+{
+    for (uint16_t m = 0; v->s != NULL && m < v->s->module_count; m++) {
+        const bq_module_reading *r = &v->s->modules[m];
+        if (p->flags[m] != 0u || r->cell_ov != 0u || r->cell_uv != 0u || r->sensor_ot != 0u) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void update_soc(bq_pack *p, const bq_picture *v, uint32_t dt_ms)
+{
+    const uint32_t mean = p->summary.complete ? p->summary.pack_mv / p->config.cells : 0u;
+
+    bq_soc_step(&p->soc, &p->config.soc, dt_ms, v->current_known, v->current_known ? v->s->current_ma : 0,
+                (uint16_t)mean);
+    p->summary.soc_permille = bq_soc_permille(&p->soc, &p->config.soc);
+}
+
+void bq_pack_step(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t now_ms, bq_action *a)
+{
+    bq_picture v;
+    bq_condition c[BQ_FAULT_COUNT];
+    uint32_t dt_ms;
+
+    if (a != NULL) {
+        memset(a, 0, sizeof *a);
+    }
+    if (p == NULL || in == NULL || a == NULL) {
+        return;
+    }
+    dt_ms = p->stepped ? now_ms - p->last_ms : 0u;
+    p->last_ms = now_ms;
+    p->stepped = true;
+    bq_pack_look(p, s, in, dt_ms, &v);
+    if (p->state != BQ_PACK_SLEEP) {
+        log_chip_flags(p, &v, now_ms);
+        bq_pack_judge(p, &v, in, c);
+        bq_pack_update_faults(p, &v, in, c, now_ms, dt_ms);
+    }
+    change_state(p, in, now_ms);
+    decide_outputs(p, in, a);
+    bq_pack_balance(p, &v, in, dt_ms, a);
+    a->clear_faults = p->state != BQ_PACK_SLEEP && v.live && flags_present(p, &v);
+    update_soc(p, &v, dt_ms);
+}
