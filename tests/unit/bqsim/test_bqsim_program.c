@@ -98,7 +98,7 @@ static void test_empty_input_is_accepted(void)
 {
     TEST_ASSERT_EQUAL(0, run("</dev/null"));
     TEST_ASSERT_EQUAL_STRING("", output);
-    TEST_ASSERT_EQUAL(0, script("# nothing\n\n \n", 14));
+    TEST_ASSERT_EQUAL(0, script("# nothing\n\n \n", 13));
     TEST_ASSERT_EQUAL_STRING("", output);
 }
 
@@ -185,7 +185,9 @@ static void test_replies_that_cannot_be_written_end_in_status_1(void)
 
 static void test_vcd_file_is_written_and_its_failure_is_status_1(void)
 {
-    write_file("script", "stack 1\nspi 00 00 01 00 00\nadvance 1ms\nset pin.conv 1\nadvance 1ms\nset pin.conv 0\n", 83);
+    static const char text[] = "stack 1\nspi 00 00 01 00 00\nadvance 1ms\nset pin.conv 1\nadvance 1ms\nset pin.conv 0\n";
+
+    write_file("script", text, sizeof text - 1);
     TEST_ASSERT_EQUAL(0, run("--vcd w.vcd script && cat w.vcd"));
     TEST_ASSERT_NOT_NULL(strstr(output, "$enddefinitions"));
     TEST_ASSERT_NOT_NULL(strstr(output, "$timescale"));
