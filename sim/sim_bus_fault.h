@@ -25,6 +25,8 @@ typedef struct sim_bus_fault {
     int brownout_device;      /**< this device loses its supply ... */
     uint32_t brownout_bytes;  /**< ... after this many more bytes on the bus (0 = not armed); it stays off */
     uint64_t flips, packets, bytes; /**< counted */
+    uint64_t skip;            /**< bits until the next random flip; the model's own */
+    double skip_for;          /**< flip_probability for which skip was drawn; the model's own */
     /** A test's own hook, called before the built-in kinds. Returns true when it answered itself (the model is not
      *  asked and rx stays as the hook left it), false to fall through. tx may be altered. */
     bool (*hook)(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n);

@@ -29,6 +29,7 @@ typedef struct sim_pl_guard {
     uint8_t enabled;    /**< inputs that are watched */
     uint8_t active;     /**< comparators that are tripped */
     uint8_t latched;    /**< inputs that are reported: COV_FAULT, CUV_FAULT, ALERT_STATUS[OT2..OT1] */
+    uint8_t pending;    /**< inputs whose delay runs */
 } sim_pl_guard;
 
 typedef struct sim_pl_dev {
@@ -67,9 +68,9 @@ typedef struct sim_pl_dev {
 
 struct sim_pl {
     int devices;
-    int reach;             /**< devices that see chip select now, counted from the base */
-    int reach_break;       /**< break_above for which reach holds */
-    bool reach_valid;
+    int reach;              /**< devices that see chip select now, counted from the base */
+    int reach_break;        /**< break_above for which reach holds */
+    bool reach_valid, chain_changed;
     bool conv;
     bool exempt;           /**< the packet being carried was touched by an injected fault */
     bool spi_seen;
@@ -79,7 +80,8 @@ struct sim_pl {
     uint64_t last_packet;   /**< start of the last packet */
     uint32_t spi_hz;
     uint32_t generation;    /**< counts broadcast RESETs: addresses of an older one are stale */
-    int16_t host_key;       /**< address to which the host's last packet carried the key; -1 = none */
+    uint64_t host_had_key;  /**< host_key before the present packet */
+    uint64_t host_key;      /**< addresses for which the host, as it meant its packets, holds a fresh key */
     uint64_t rng;
     sim_pl_options options;
     bool link_broken[SIM_PL_MAX_DEVICES];
