@@ -82,15 +82,21 @@ typedef struct bq_app {
     bq_sample sample;
     bq_pack pack;
     bq_pack_input input;
-    bq_action action;
+    bq_action action, applied;
     bq_app_counters counters;
-    bq_pack_request request;
     bq_app_job job;
-    uint32_t last_us, rest_us, now_ms;          /* software-extended time */
-    uint32_t period_us, tick_us, step_us;       /* begin of the period, last pack step */
-    uint32_t job_ms, retry_at_ms, scan_ok_ms, current_ms, mismatch_since_ms, wait_us;
-    bool scanned, scan_ended, step_now, apply_due, retry_pending, asleep;
-    bool line_on, mismatch, current_seen;
+    uint32_t last_us, rest_us, now_ms;   /* software-extended time */
+    uint32_t period_us, tick_us;         /* when the present period began */
+    uint32_t step_us, step_ms;           /* last pack step */
+    uint32_t wait_us;                    /* hint of the running job */
+    uint32_t job_ms, retry_ms, scan_ms;  /* job began, last retryable failure, last good scan */
+    uint32_t current_age_ms, mismatch_ms;
+    int32_t current_ma;
+    bool pausing;                        /* retry_ms is the begin of a pause */
+    bool scan_due, scan_ended, apply_due, step_now;
+    bool scanned;                        /* a scan has succeeded since the monitor is up */
+    bool asleep;
+    bool line_on, line_failed, mismatch, mismatch_told, current_seen;
 } bq_app;
 
 /**

@@ -11,7 +11,8 @@ static bool charging(const bq_pack *p, const bq_picture *v)
 static bool resting(const bq_pack *p, const bq_picture *v, const bq_pack_input *in)
 {
     if (v->current_known) {
-        return v->s->current_ma <= p->config.balance_rest_ma && v->s->current_ma >= -p->config.balance_rest_ma;
+        return v->s->current_ma <= p->config.balance_rest_ma &&
+               v->s->current_ma >= -p->config.balance_rest_ma;
     }
     return v->s != NULL && !v->s->current_valid && !p->outputs_on && in->contactor_mismatch_ms == 0u;
 }
@@ -41,8 +42,9 @@ static bool eligible(const bq_pack *p, const bq_cell_reading *c)
            c->mv >= p->config.balance_min_cell_mv;
 }
 
-/* The highest eligible cell of first..end - 1 that is not chosen yet, the lower number of equals; end = none. */
-static uint16_t highest(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end, const bq_action *a)
+/* The highest eligible cell of first..end - 1 not chosen yet, the lower number of equals; end = none. */
+static uint16_t highest(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end,
+                        const bq_action *a)
 {
     uint16_t best = end;
 
@@ -56,7 +58,8 @@ static uint16_t highest(const bq_pack *p, const bq_sample *s, uint16_t first, ui
 }
 
 /* Cells first..end - 1 form one module. */
-static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end, bq_action *a)
+static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end,
+                                 bq_action *a)
 {
     const uint16_t limit = p->config.balance_max_per_module;
     uint16_t chosen = 0;

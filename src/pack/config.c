@@ -141,7 +141,8 @@ static const char *contradiction(const bq_pack_config *c)
     } rules[] = {
         {c->modules > c->cells, "modules"},
         {c->cell_ov_clear_mv >= c->cell_ov_mv, "cell_ov_clear_mv"},
-        {c->cell_uv_clear_mv <= c->cell_uv_mv || c->cell_uv_clear_mv >= c->cell_ov_clear_mv, "cell_uv_clear_mv"},
+        {c->cell_uv_clear_mv <= c->cell_uv_mv || c->cell_uv_clear_mv >= c->cell_ov_clear_mv,
+         "cell_uv_clear_mv"},
         {c->overtemp_clear_dc >= c->overtemp_dc, "overtemp_clear_dc"},
         {c->undertemp_clear_dc <= c->undertemp_dc || c->undertemp_clear_dc >= c->overtemp_clear_dc,
          "undertemp_clear_dc"},

@@ -5,7 +5,7 @@
 
 /* Flags after which a monitor protects or measures nothing: acted on at once. */
 #define CHIP_HARD (BQ_F_DIE_TEMP | BQ_F_SUPPLY | BQ_F_MEMORY | BQ_F_DEFECTIVE)
-/* Flags a driver can cure by itself: acted on when they last for comm_timeout_ms. BQ_F_COMM is judged by blindness. */
+/* Flags a driver can cure: acted on when they last for comm_timeout_ms. BQ_F_COMM is judged by blindness. */
 #define CHIP_SOFT (BQ_F_RESET | BQ_F_LOCKUP | BQ_F_CONFIG | BQ_F_BALANCE | BQ_F_CHAIN)
 
 /* Number, counted from 1, of the k-th cell (sensor) of module m, k from 0; 0 if the module has fewer. */
@@ -126,7 +126,8 @@ static void judge_comparators(const bq_picture *v, uint16_t m, uint16_t flags, b
     if (((flags & BQ_F_CELL_UV) != 0u || r->cell_uv != 0u) && first(&c[BQ_FAULT_CHIP_CELL_UV], m, flags)) {
         c[BQ_FAULT_CHIP_CELL_UV].cell = r->cell_uv != 0u ? cell_of(v->s, m, lowest_bit(r->cell_uv)) : 0u;
     }
-    if (((flags & BQ_F_OVERTEMP) != 0u || r->sensor_ot != 0u) && first(&c[BQ_FAULT_CHIP_OVERTEMP], m, flags)) {
+    if (((flags & BQ_F_OVERTEMP) != 0u || r->sensor_ot != 0u) &&
+        first(&c[BQ_FAULT_CHIP_OVERTEMP], m, flags)) {
         c[BQ_FAULT_CHIP_OVERTEMP].sensor =
             r->sensor_ot != 0u ? sensor_of(v->s, m, lowest_bit(r->sensor_ot)) : (uint8_t)0;
     }
@@ -188,7 +189,7 @@ static uint8_t bad_sensor(const bq_sample *s, uint16_t m)
     return 0;
 }
 
-/* Why a module has been blind for too long. Every blind module breaks at least one of the faults, or one that explains it is active. */
+/* Why a module has been blind for too long: at least one fault is broken, or one that explains it is active. */
 static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_condition *c)
 {
     const uint64_t bit = (uint64_t)1 << m;
@@ -199,7 +200,8 @@ static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_co
         (void)first(&c[BQ_FAULT_COMM_LOSS], m, blind);
         return;
     }
-    if ((v->no_cell & bit) != 0u && (p->faults & explained) == 0u && first(&c[BQ_FAULT_NO_READING], m, blind)) {
+    if ((v->no_cell & bit) != 0u && (p->faults & explained) == 0u &&
+        first(&c[BQ_FAULT_NO_READING], m, blind)) {
         c[BQ_FAULT_NO_READING].cell = bad_cell(v->s, m);
     }
     if ((v->no_temp & bit) != 0u && first(&c[BQ_FAULT_SENSOR], m, blind)) {

@@ -133,7 +133,7 @@ static bool stopped(const bq_pack *p, bool (*stops)(bq_pack_fault))
     return false;
 }
 
-/* In the state "on" both directions conduct. In "fault" a direction may stay on if it was, never come back. */
+/* In the state "on" both directions conduct. In "fault" one may stay on if it was, never come back. */
 static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
 {
     const bool on = p->state == BQ_PACK_ON;

@@ -20,7 +20,7 @@ static void set_seen(uint32_t *mask, uint16_t n)
     mask[n / 32u] |= (uint32_t)1u << (n % 32u);
 }
 
-/* The configured numbers of everything, and cells and sensors that belong to existing modules, in their order. */
+/* The configured numbers of everything; cells in the order of their modules, nothing outside these. */
 static bool shape_ok(const bq_pack *p, const bq_sample *s)
 {
     uint16_t module = 0;
@@ -53,7 +53,8 @@ static uint32_t module_age(const bq_pack *p, const bq_sample *s, uint16_t m)
     return age > p->sequence_age_ms ? age : p->sequence_age_ms;
 }
 
-static void advance_ages(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t dt_ms, bq_picture *v)
+static void advance_ages(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t dt_ms,
+                         bq_picture *v)
 {
     p->copy_age_ms = s != NULL && in->sample_copied ? 0u : bq_pack_add_ms(p->copy_age_ms, dt_ms);
     v->fresh = s != NULL && (!p->have_sequence || s->sequence != p->sequence);
@@ -178,7 +179,7 @@ static void look_at_sensors(bq_pack *p, bq_picture *v, bq_pack_summary *y)
     }
 }
 
-/* A module whose every reading is valid is as blind as its readings are old; complete = that holds everywhere and is fresh. */
+/* A module whose every reading is valid is as blind as its readings are old. Complete = that and fresh everywhere. */
 static void update_blindness(bq_pack *p, const bq_picture *v, bq_pack_summary *y)
 {
     const uint64_t bad = v->silent | v->no_cell | v->no_temp;
@@ -187,7 +188,7 @@ static void update_blindness(bq_pack *p, const bq_picture *v, bq_pack_summary *y
     for (uint16_t m = 0; m < p->config.modules; m++) {
         if (v->s != NULL && v->live && (bad & BIT(m)) == 0u) {
             const uint32_t age = module_age(p, v->s, m);
-            /* until the first complete picture the time since the monitor is up counts, not readings from before */
+            /* until the first complete picture the time since the monitor is up counts, nothing from before */
             p->blind_ms[m] = p->started || age < p->blind_ms[m] ? age : p->blind_ms[m];
         }
         if (p->blind_ms[m] > y->blind_ms) {

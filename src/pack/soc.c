@@ -85,7 +85,8 @@ static void count(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known,
     }
 }
 
-void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma, uint16_t cell_mv)
+void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma,
+                 uint16_t cell_mv)
 {
     const bool rest = known && current_ma <= c->rest_ma && current_ma >= -c->rest_ma;
 

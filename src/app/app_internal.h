@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the files of the super-loop share; see include/bqhost/app.h. */
+#ifndef APP_INTERNAL_H
+#define APP_INTERNAL_H
+
+#include "bqhost/app.h"
+
+void bq_app_count(uint32_t *counter); /* saturating */
+
+/* monitor.c: polls the running job once, begins the next one when idle. True if one ended or began. */
+bool bq_app_poll_job(bq_app *app);
+bool bq_app_begin_job(bq_app *app);
+bool bq_app_paused(const bq_app *app, uint32_t *left_us); /* a failed job may not be repeated yet */
+
+/* contactor.c */
+bq_status bq_app_write_contactor(bq_app *app, bool on); /* BQ_E_UNSUPPORTED counts as BQ_OK */
+void bq_app_watch_contactor(bq_app *app);
+uint32_t bq_app_mismatch_ms(const bq_app *app);
+
+#endif
