@@ -83,6 +83,12 @@ expect 0 'test_a.c: not compiled' 'a file that nobody compiles is named'
 expect 0 '^PL-CRC-02 \[D\] not proven' 'and its claims do not count' --list
 
 fresh
+echo 'file(GLOB all test_*.c)' >"$tree/tests/unit/a/CMakeLists.txt"
+expect 0 '^PL-CRC +3 +2 ' 'a file that a GLOB covers counts'
+echo 'file(GLOB all other_*.c)' >"$tree/tests/unit/a/CMakeLists.txt"
+expect 0 'test_a.c: not compiled' 'a file that no GLOB covers does not'
+
+fresh
 sed -i 's/RUN_TEST(test_a)/return 0/' "$tree/tests/unit/a/test_a.c"
 expect 1 'test_a\(\) is never run' 'a test function that nobody runs'
 
