@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prints the C file of an NTC table for include/bqhost/thermistor.h, from R25 and beta.
 
-The curve is R(T) = R25 * exp(beta * (1/T - 1/298.15 K)). Before anything is printed, every whole number of ohms of the table's range
-is converted the way bq_thermistor_dc() does it and compared with the curve; an error of 0.1 degree C or more, rounding included,
-is refused (choose a smaller step).
+The curve is R(T) = R25 * exp(beta * (1/T - 1/298.15 K)). Before anything is printed, resistances of the whole range
+are converted the way bq_thermistor_dc() does it and compared with the curve; an error of 0.1 degree C or more,
+rounding included, is refused (choose a smaller step).
 
     tools/thermistor.py --r25 10000 --beta 3435 --name bq_thermistor_103at > src/core/thermistor_103at.c
 """
@@ -30,7 +30,7 @@ def worst_error(table, first_dc, step_dc, r25, beta):
     for index in range(len(table) - 1):
         high, low = table[index], table[index + 1]
         span = high - low
-        # Beyond some thousand ohms per step neighbours differ by next to nothing: look at every k-th value.
+        # 2000 points of an interval show its worst; the unit test looks at every ohm.
         for ohms in range(low, high + 1, max(1, span // 2000)):
             tenths = first_dc + index * step_dc + (2 * step_dc * (high - ohms) + span) // (2 * span)
             error = abs(tenths / 10.0 - temperature(ohms, r25, beta))
@@ -63,8 +63,8 @@ def main():
         sys.exit(f"thermistor: {error:.3f} C wrong at {where} ohms; choose a smaller --step")
 
     print("/* SPDX-License-Identifier: Apache-2.0 */")
-    print(f"/* Made by tools/thermistor.py --r25 {options.r25:g} --beta {options.beta:g} --name {options.name}"
-          f" --from {options.first:g} --to {options.last:g} --step {options.step:g}")
+    print(f"/* Made by tools/thermistor.py --name {options.name} --r25 {options.r25:g} --beta {options.beta:g}")
+    print(f" *     --from {options.first:g} --to {options.last:g} --step {options.step:g}")
     print(f" * R(T) = R25 * exp(beta * (1/T - 1/298.15 K)); worst error {error:.3f} C, rounding to 0.1 C included. */")
     print('#include "bqhost/thermistor.h"\n')
     print(f"static const uint32_t ohms[{len(table)}] = {{")

@@ -3,8 +3,8 @@
  * @file bq76pl536_convert.h
  * Codes of the bq76PL536 to physical units and back, in exact integer arithmetic.
  *
- * Common to all functions: pure, nothing blocks. Results are the exact rational value rounded to the nearest unit, halves
- * upward, unless stated otherwise. They return BQ_OK, or an error with `*out` unchanged:
+ * Common to all functions: pure, nothing blocks. Results are the exact rational value rounded to the nearest
+ * unit, halves upward, unless stated otherwise. They return BQ_OK, or an error with `*out` unchanged:
  * BQ_E_ARG (null pointer, no such sensor), BQ_E_RANGE (a code or value outside what the register can hold),
  * BQ_E_NO_CODE (inside the range, but between two codes). Nothing is ever clamped.
  */
@@ -36,7 +36,8 @@ static inline bool bq76pl536_code_clipped(uint16_t code)
     return code == 0u || code >= BQ76PL536_CODE_MAX;
 }
 
-/** Cell voltage in mV = code x 6250 / 16383 (PL-VCELL-01, -05). BQ_E_RANGE above 0x3fff (PL-VCELL-06). `mv` must not be NULL.
+/** Cell voltage in mV = code x 6250 / 16383 (PL-VCELL-01, -05). BQ_E_RANGE above 0x3fff (PL-VCELL-06). `mv`
+ * must not be NULL.
  *  Inline and free of division: this is the scan path. */
 static inline bq_status bq76pl536_cell_mv(uint16_t code, uint16_t *mv)
 {
@@ -49,7 +50,8 @@ static inline bq_status bq76pl536_cell_mv(uint16_t code, uint16_t *mv)
     return BQ_OK;
 }
 
-/** Brick voltage in mV = code x 33333 / 16384 (PL-VBAT-01, PL-AMB-58). BQ_E_RANGE above 0x3fff. `mv` must not be NULL. */
+/** Brick voltage in mV = code x 33333 / 16384 (PL-VBAT-01, PL-AMB-58). BQ_E_RANGE above 0x3fff. `mv` must
+ * not be NULL. */
 static inline bq_status bq76pl536_brick_mv(uint16_t code, uint16_t *mv)
 {
     if (code > BQ76PL536_CODE_MAX) {
@@ -71,18 +73,22 @@ bq_status bq76pl536_brick_code(uint32_t mv, uint16_t *code);
 bq_status bq76pl536_gpai_uv(uint16_t code, uint32_t *uv);
 /** Nearest GPAI code of 0..2500000 uV. */
 bq_status bq76pl536_gpai_code(uint32_t uv, uint16_t *code);
-/** GPAI as parts per million of REG50 = code / 32766, REG50 as reference; uncalibrated (PL-GPAI-03, PL-AMB-57). */
+/** GPAI as parts per million of REG50 = code / 32766, REG50 as reference; uncalibrated (PL-GPAI-03,
+ * PL-AMB-57). */
 bq_status bq76pl536_gpai_ratio_ppm(uint16_t code, uint32_t *ppm);
 
-/** Temperature input `sensor` (1 or 2) in parts per million of REG50: (code + 2) / 33046, (code + 9) / 33068 (PL-TS-01, -02). */
+/** Temperature input `sensor` (1 or 2) in parts per million of REG50: (code + 2) / 33046, (code + 9) / 33068
+ * (PL-TS-01, -02). */
 bq_status bq76pl536_ts_ratio_ppm(uint8_t sensor, uint16_t code, uint32_t *ppm);
 /** Nearest code of a ratio in parts per million; BQ_E_RANGE where it would lie outside 0..0x3fff. */
 bq_status bq76pl536_ts_code(uint8_t sensor, uint32_t ppm, uint16_t *code);
 
-/** Thermistor resistance of a code of `sensor` (1 or 2): 1820 / ratio - 3290 ohms (PL-TS-09). One 32-bit division.
+/** Thermistor resistance of a code of `sensor` (1 or 2): 1820 / ratio - 3290 ohms (PL-TS-09). One 32-bit
+ * division.
  *  BQ_E_RANGE for 0 (open), 0x3fff (shorted) and impossible codes. */
 bq_status bq76pl536_ts_ohms(uint8_t sensor, uint16_t code, uint32_t *ohms);
-/** Nearest code of a resistance in that network; BQ_E_RANGE where it would be clipped (0 or 0x3fff and beyond). */
+/** Nearest code of a resistance in that network; BQ_E_RANGE where it would be clipped (0 or 0x3fff and
+ * beyond). */
 bq_status bq76pl536_ts_code_of_ohms(uint8_t sensor, uint32_t ohms, uint16_t *code);
 
 /* ---- protection settings -------------------------------------------------------------------- */
@@ -106,8 +112,8 @@ static inline bool bq76pl536_cov_cuv_legal(uint16_t cov_mv, uint16_t cuv_mv)
     return cov_mv >= (uint32_t)cuv_mv + BQ76PL536_COV_CUV_MIN_MV;
 }
 
-/** CONFIG_COVT, CONFIG_CUVT: 0 (no delay, not latched), 100..3100 us in steps of 100, 100000..3100000 us in steps of 100000
- *  (PL-FLT-02). Between 3100 and 100000 us: BQ_E_NO_CODE. */
+/** CONFIG_COVT, CONFIG_CUVT: 0 (no delay, not latched), 100..3100 us in steps of 100, 100000..3100000 us in
+ * steps of 100000 (PL-FLT-02). Between 3100 and 100000 us: BQ_E_NO_CODE. */
 bq_status bq76pl536_delay_code(uint32_t us, uint8_t *code);
 /** Delay of a CONFIG_COVT/CUVT value in us; BQ_E_RANGE for bits 6..5. 0x00 and 0x80 are 0. */
 bq_status bq76pl536_delay_us(uint8_t code, uint32_t *us);
@@ -124,13 +130,14 @@ bq_status bq76pl536_ott_ms(uint8_t code, uint16_t *ms);
 
 /* ---- operation ------------------------------------------------------------------------------ */
 
-/** CB_TIME: 0 (off), 1..63 s, or whole minutes up to 63 (PL-CB-02). Up to 63 s the code in seconds is chosen. */
+/** CB_TIME: 0 (off), 1..63 s, or whole minutes up to 63 (PL-CB-02). Up to 63 s the code in seconds is
+ * chosen. */
 bq_status bq76pl536_cb_time_code(uint32_t seconds, uint8_t *code);
 /** Period of a CB_TIME value in seconds; BQ_E_RANGE for bit 6. 0x00 and 0x80 are 0. */
 bq_status bq76pl536_cb_time_s(uint8_t code, uint16_t *seconds);
 
-/** ADC_CONTROL for `cells` 3..6 (lower ones never alone: a part has 3 cells), `sensors` as bits (1 = TS1, 2 = TS2), GPAI or
- *  brick channel, ADC_ON (PL-REG-25, PL-ADC-08). BQ_E_CELLS, BQ_E_ARG. */
+/** ADC_CONTROL for `cells` 3..6 (lower ones never alone: a part has 3 cells), `sensors` as bits (1 = TS1, 2
+ * = TS2), GPAI or brick channel, ADC_ON (PL-REG-25, PL-ADC-08). BQ_E_CELLS, BQ_E_ARG. */
 bq_status bq76pl536_adc_control(uint8_t cells, uint8_t sensors, bool gpai, bool adc_on, uint8_t *value);
 /** Number of channels, 1..9, that an ADC_CONTROL value converts (PL-ADC-04). */
 uint8_t bq76pl536_channels(uint8_t adc_control);
@@ -143,19 +150,23 @@ typedef enum bq76pl536_adct {
     BQ76PL536_ADCT_24US
 } bq76pl536_adct;
 
-/** FUNCTION_CONFIG for `cells` 3..6, brick voltage or GPAI pins, REG50 or band-gap (PL-REG-37). BQ_E_CELLS, BQ_E_ARG. */
-bq_status bq76pl536_function_config(bq76pl536_adct adct, uint8_t cells, bool brick, bool reg50, uint8_t *value);
+/** FUNCTION_CONFIG for `cells` 3..6, brick voltage or GPAI pins, REG50 or band-gap (PL-REG-37). BQ_E_CELLS,
+ * BQ_E_ARG. */
+bq_status bq76pl536_function_config(bq76pl536_adct adct, uint8_t cells, bool brick, bool reg50,
+                                    uint8_t *value);
 
-/** Nominal and worst duration of a conversion of `channels` 1..9 (PL-CONV-10, -12, PL-SEQ-06-03); the worst case holds the +10 % of
- *  the converter, the wake-up in automatic mode and 2 us of stack skew, rounded up. Either pointer may be NULL.
+/** Nominal and worst duration of a conversion of `channels` 1..9 (PL-CONV-10, -12, PL-SEQ-06-03); the worst
+ * case holds the +10 % of the converter, the wake-up in automatic mode and 2 us of stack skew, rounded up.
+ * Either pointer may be NULL.
  *  BQ_E_CONFIG: automatic mode with another time than 3 us, which locks the part up (PL-ADC-12). */
 bq_status bq76pl536_conversion_us(uint8_t channels, bq76pl536_adct adct, bool adc_on, uint16_t *nominal_us,
                                   uint16_t *worst_us);
 
-/** Highest SPI clock for a stack of 1..62 devices at 40 % duty, slower delay model, at most 1 MHz, rounded down to whole kHz
- *  (PL-NUM-38). BQ_E_DEVICES. */
+/** Highest SPI clock for a stack of 1..62 devices at 40 % duty, slower delay model, at most 1 MHz, rounded
+ * down to whole kHz (PL-NUM-38). BQ_E_DEVICES. */
 bq_status bq76pl536_spi_max_hz(uint8_t devices, uint32_t *hz);
-/** Default SPI clock: 250 kHz up to 16 devices, 125 kHz up to 32, 62.5 kHz up to 62 (PL-TIM-10). BQ_E_DEVICES. */
+/** Default SPI clock: 250 kHz up to 16 devices, 125 kHz up to 32, 62.5 kHz up to 62 (PL-TIM-10).
+ * BQ_E_DEVICES. */
 bq_status bq76pl536_spi_default_hz(uint8_t devices, uint32_t *hz);
 /** Lowest legal SPI clock (PL-TIM-01). */
 #define BQ76PL536_SPI_MIN_HZ 10000u

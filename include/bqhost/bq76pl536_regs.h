@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file bq76pl536_regs.h
- * Registers of the bq76PL536: addresses, bits, reset values (PL-REG-07..49), masks (PL-REG-50) and what a host may write.
+ * Registers of the bq76PL536: addresses, bits, reset values (PL-REG-07..49), masks (PL-REG-50) and what a
+ * host may write.
  * Reserved addresses (0x13..0x1f, 0x26..0x2f, 0x35..0x39, 0x3e, 0x4c..0xff) read 0 and are never written.
  */
 #ifndef BQHOST_BQ76PL536_REGS_H
@@ -138,20 +139,22 @@ extern "C" {
 #define BQ76PL536_DELAY_CODE 0x1fu
 #define BQ76PL536_OT_CODE_MAX 11u
 
-/* Values after power-on reset or RESET command that are not 0. Group 3 is loaded from EPROM (0x00 in a blank part). */
+/* Values after power-on reset or RESET command that are not 0. Group 3 is loaded from EPROM (0x00 in a blank
+ * part). */
 #define BQ76PL536_RESET_DEVICE_STATUS 0x61u /**< FAULT, ALERT, DRDY */
 #define BQ76PL536_RESET_ALERT_STATUS 0x80u  /**< AR */
 #define BQ76PL536_RESET_FAULT_STATUS 0x08u  /**< POR; COV may join it at once in a blank part */
 
-/** Bits of `reg` that keep a written 1 and so can be verified by read-back (PL-REG-50). 0 for registers that act on the
- *  write and read 0, for read-only registers and for reserved addresses. */
+/** Bits of `reg` that keep a written 1 and so can be verified by read-back (PL-REG-50). 0 for registers that
+ * act on the write and read 0, for read-only registers and for reserved addresses. */
 uint8_t bq76pl536_readback_mask(uint8_t reg);
 
 /**
  * May a host write `value` to `reg`? (PL-REG-01, PL-REG-02, PL-TEST-03, PL-AMB-45, PL-FLT-14)
- * BQ_OK; BQ_E_ARG: `reg` is reserved or read-only; BQ_E_RANGE: the value sets an undefined bit, is a reserved or illegal code
- * (COV above 0x3c, CUV above 0x1a, OT above 11), joins FORCE with the clearing of flags, is an address outside 1..0x3e
- * (bit 7 may be set or not), enters TEST mode, or is 0x91 for E_EN (only bq76pl536_packet_program() builds that).
+ * BQ_OK; BQ_E_ARG: `reg` is reserved or read-only; BQ_E_RANGE: the value sets an undefined bit, is a
+ * reserved or illegal code (COV above 0x3c, CUV above 0x1a, OT above 11), joins FORCE with the clearing of
+ * flags, is an address outside 1..0x3e (bit 7 may be set or not), enters TEST mode, or is 0x91 for E_EN
+ * (only bq76pl536_packet_program() builds that).
  */
 bq_status bq76pl536_write_check(uint8_t reg, uint8_t value);
 

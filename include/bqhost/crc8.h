@@ -6,7 +6,8 @@
  * Three forms with the same result; each is an object of its own, so that a linker keeps only what is used.
  * All are pure functions: no state, no blocking, no failure.
  *
- * `crc` is 0 for the first piece of a message, or the result for the pieces before (a message may be fed in pieces).
+ * `crc` is 0 for the first piece of a message, or the result for the pieces before (a message may be fed in
+ * pieces).
  * `data` points to `n` bytes; NULL is legal when n is 0. The result is the CRC of everything fed so far.
  */
 #ifndef BQHOST_CRC8_H

@@ -2,8 +2,9 @@
 /* Conversion of measurements, off the scan path: exactness before speed. */
 #include "bqhost/bq76pl536_convert.h"
 
-/* a * b / c, nearest, halves upward; exact for a <= c < 2^31 and a result below 2^31. Long division, bit by bit: no 64-bit
- * arithmetic. After each bit of b the invariant is: (bits of b so far) * a = quotient * c + rest, rest < c. */
+/* a * b / c, nearest, halves upward; exact for a <= c < 2^31 and a result below 2^31. Long division, bit by
+ * bit: no 64-bit arithmetic. After each bit of b the invariant is: (bits of b so far) * a = quotient * c +
+ * rest, rest < c. */
 static uint32_t scale(uint32_t a, uint32_t b, uint32_t c)
 {
     uint32_t quotient = 0;

@@ -2,8 +2,8 @@
 #include "bqhost/bq76pl536_packet.h"
 #include "bqhost/crc8.h"
 
-bq_status bq76pl536_packet_read(uint8_t *tx, size_t room, uint8_t device, uint8_t first, uint8_t count, bool crc,
-                                size_t *length)
+bq_status bq76pl536_packet_read(uint8_t *tx, size_t room, uint8_t device, uint8_t first, uint8_t count,
+                                bool crc, size_t *length)
 {
     if (tx == NULL || length == NULL || device > BQ76PL536_ADDR_LAST) {
         return BQ_E_ARG;
@@ -25,10 +25,11 @@ bq_status bq76pl536_packet_read(uint8_t *tx, size_t room, uint8_t device, uint8_
     return BQ_OK;
 }
 
-bq_status bq76pl536_packet_write(uint8_t *tx, size_t room, uint8_t device, uint8_t reg, uint8_t value, bool crc,
-                                 size_t *length)
+bq_status bq76pl536_packet_write(uint8_t *tx, size_t room, uint8_t device, uint8_t reg, uint8_t value,
+                                 bool crc, size_t *length)
 {
-    if (tx == NULL || length == NULL || room < BQ76PL536_WRITE_BYTES(crc) || device > BQ76PL536_ADDR_BROADCAST) {
+    if (tx == NULL || length == NULL || room < BQ76PL536_WRITE_BYTES(crc) ||
+        device > BQ76PL536_ADDR_BROADCAST) {
         return BQ_E_ARG;
     }
     if (reg == BQ76PL536_ADDRESS_CONTROL && device != BQ76PL536_ADDR_NONE) {

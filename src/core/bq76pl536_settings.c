@@ -173,12 +173,14 @@ uint8_t bq76pl536_channels(uint8_t adc_control)
     return (uint8_t)n;
 }
 
-bq_status bq76pl536_function_config(bq76pl536_adct adct, uint8_t cells, bool brick, bool reg50, uint8_t *value)
+bq_status bq76pl536_function_config(bq76pl536_adct adct, uint8_t cells, bool brick, bool reg50,
+                                    uint8_t *value)
 {
     bq_status status = (unsigned)adct > BQ76PL536_ADCT_24US ? BQ_E_ARG : cells_legal(cells, value);
     if (status == BQ_OK) {
-        *value = (uint8_t)((unsigned)adct << BQ76PL536_FUNC_ADCT_SHIFT | (reg50 ? BQ76PL536_FUNC_GPAI_REF : 0u) |
-                           (brick ? BQ76PL536_FUNC_GPAI_SRC : 0u) | (6u - cells) << BQ76PL536_FUNC_CN_SHIFT);
+        *value =
+            (uint8_t)((unsigned)adct << BQ76PL536_FUNC_ADCT_SHIFT | (reg50 ? BQ76PL536_FUNC_GPAI_REF : 0u) |
+                      (brick ? BQ76PL536_FUNC_GPAI_SRC : 0u) | (6u - cells) << BQ76PL536_FUNC_CN_SHIFT);
     }
     return status;
 }

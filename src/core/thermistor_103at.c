@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Made by tools/thermistor.py --r25 10000 --beta 3435 --name bq_thermistor_103at --from -40 --to 125 --step 1.5
+/* Made by tools/thermistor.py --name bq_thermistor_103at --r25 10000 --beta 3435
+ *     --from -40 --to 125 --step 1.5
  * R(T) = R25 * exp(beta * (1/T - 1/298.15 K)); worst error 0.080 C, rounding to 0.1 C included. */
 #include "bqhost/thermistor.h"
 

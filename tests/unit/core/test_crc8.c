@@ -14,7 +14,8 @@ void tearDown(void)
 {
 }
 
-/* The definition itself, one message bit at a time into a shift register: nothing in common with the code under test. */
+/* The definition itself, one message bit at a time into a shift register: nothing in common with the code
+ * under test. */
 static uint8_t by_definition(const uint8_t *data, unsigned n)
 {
     unsigned shift = 0;
@@ -35,7 +36,8 @@ static void test_published_values(void)
         const char *bytes;
         unsigned n;
         uint8_t crc;
-    } vectors[] = {{"123456789", 9, 0xf4}, {"", 0, 0x00}, {"\x01", 1, 0x07}, {"\x80", 1, 0x89}, {"\xff", 1, 0xf3}};
+    } vectors[] = {
+        {"123456789", 9, 0xf4}, {"", 0, 0x00}, {"\x01", 1, 0x07}, {"\x80", 1, 0x89}, {"\xff", 1, 0xf3}};
     for (unsigned i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
         const uint8_t *data = (const uint8_t *)vectors[i].bytes;
         TEST_ASSERT_EQUAL_HEX8(vectors[i].crc, bq_crc8_bitwise(0, data, vectors[i].n));
@@ -45,7 +47,8 @@ static void test_published_values(void)
     }
 }
 
-/* All one-byte inputs from every start value (this reaches every entry of both tables), all two-byte inputs from zero. */
+/* All one-byte inputs from every start value (this reaches every entry of both tables), all two-byte inputs
+ * from zero. */
 /* proves: PL-CRC-01 */
 static void test_all_forms_agree_with_the_definition(void)
 {
@@ -76,7 +79,8 @@ static void test_no_bytes_leave_the_crc_alone_and_null_is_legal(void)
     }
 }
 
-/* Syndromes of all single-bit errors of a packet of `bytes`; the CRC is linear, so they stand for every error pattern. */
+/* Syndromes of all single-bit errors of a packet of `bytes`; the CRC is linear, so they stand for every error
+ * pattern. */
 static void syndromes(uint8_t *out, unsigned bytes)
 {
     uint8_t error[BURST_BYTES];

@@ -101,11 +101,12 @@ static void test_cell_examples(void)
         uint32_t mv;
         unsigned code;
         double back_mv;
-    } rows[] = {{0, 0x0000, 0.00},       {700, 0x072b, 700.04},   {1000, 0x0a3d, 999.89},  {1200, 0x0c4a, 1200.18},
-                {2000, 0x147b, 2000.17}, {2500, 0x1999, 2499.92}, {3000, 0x1eb8, 3000.06}, {3300, 0x21ca, 3299.91},
-                {3350, 0x224d, 3349.89}, {3600, 0x24dd, 3600.15}, {3700, 0x25e3, 3700.10}, {4150, 0x2a7e, 4149.88},
-                {4200, 0x2b01, 4199.86}, {4500, 0x2e14, 4500.09}, {5000, 0x3332, 4999.85}, {6000, 0x3d70, 6000.12},
-                {6250, 0x3fff, 6250.00}};
+    } rows[] = {{0, 0x0000, 0.00},       {700, 0x072b, 700.04},   {1000, 0x0a3d, 999.89},
+                {1200, 0x0c4a, 1200.18}, {2000, 0x147b, 2000.17}, {2500, 0x1999, 2499.92},
+                {3000, 0x1eb8, 3000.06}, {3300, 0x21ca, 3299.91}, {3350, 0x224d, 3349.89},
+                {3600, 0x24dd, 3600.15}, {3700, 0x25e3, 3700.10}, {4150, 0x2a7e, 4149.88},
+                {4200, 0x2b01, 4199.86}, {4500, 0x2e14, 4500.09}, {5000, 0x3332, 4999.85},
+                {6000, 0x3d70, 6000.12}, {6250, 0x3fff, 6250.00}};
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_HEX16(rows[i].code, cell_code(rows[i].mv * 1000u));
         TEST_ASSERT_DOUBLE_WITHIN(0.0051, rows[i].back_mv, cell_uv(rows[i].code) / 1000.0);
@@ -161,9 +162,10 @@ static void test_brick_examples(void)
     static const struct {
         uint32_t mv;
         unsigned code, back_mv;
-    } rows[] = {{0, 0x0000, 0},          {7200, 0x0dd3, 7200},   {10800, 0x14bc, 10799}, {14400, 0x1ba6, 14400},
-                {18000, 0x228f, 17999}, {20000, 0x2666, 19999}, {20295, 0x26f7, 20294}, {21600, 0x2979, 21600},
-                {25200, 0x3062, 25199}, {27000, 0x33d7, 27000}, {30000, 0x399a, 30001}};
+    } rows[] = {{0, 0x0000, 0},         {7200, 0x0dd3, 7200},   {10800, 0x14bc, 10799},
+                {14400, 0x1ba6, 14400}, {18000, 0x228f, 17999}, {20000, 0x2666, 19999},
+                {20295, 0x26f7, 20294}, {21600, 0x2979, 21600}, {25200, 0x3062, 25199},
+                {27000, 0x33d7, 27000}, {30000, 0x399a, 30001}};
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_HEX16(rows[i].code, brick_code(rows[i].mv));
         TEST_ASSERT_EQUAL_UINT(rows[i].back_mv, brick_mv(rows[i].code));
@@ -188,8 +190,9 @@ static void test_temperature_examples(void)
     static const struct {
         uint32_t ppm;
         unsigned ts1, ts2;
-    } rows[] = {{50000, 0x0672, 0x066c},  {100000, 0x0ce7, 0x0ce2}, {136900, 0x11aa, 0x11a6}, {200000, 0x19cf, 0x19cd},
-                {250000, 0x2044, 0x2042}, {300000, 0x26b8, 0x26b7}, {400000, 0x33a0, 0x33a2}, {480000, 0x3df4, 0x3df8}};
+    } rows[] = {{50000, 0x0672, 0x066c},  {100000, 0x0ce7, 0x0ce2}, {136900, 0x11aa, 0x11a6},
+                {200000, 0x19cf, 0x19cd}, {250000, 0x2044, 0x2042}, {300000, 0x26b8, 0x26b7},
+                {400000, 0x33a0, 0x33a2}, {480000, 0x3df4, 0x3df8}};
     uint16_t code;
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_HEX16(rows[i].ts1, ts_code(1, rows[i].ppm));
@@ -228,7 +231,8 @@ static void test_every_temperature_code_as_resistance(void)
     }
 }
 
-/* The printed codes belong to the printed ratio of five digits; 10000 ohms exactly give 4523.49 and 4519.50, one code less. */
+/* The printed codes belong to the printed ratio of five digits; 10000 ohms exactly give 4523.49 and 4519.50,
+ * one code less. */
 /* proves: PL-NUM-12 */
 static void test_thermistor_at_25_degrees(void)
 {

@@ -54,8 +54,8 @@ static void test_reads_stay_within_the_map_and_never_go_to_all(void)
         for (unsigned first = 0; first < 256u; first++) {
             for (unsigned count = 0; count < 256u; count++) {
                 bool legal = devices[d] <= 0x3eu && count >= 1u && first + count - 1u <= 0x4bu;
-                bq_status status = bq76pl536_packet_read(tx, sizeof tx, devices[d], (uint8_t)first, (uint8_t)count,
-                                                         true, &length);
+                bq_status status = bq76pl536_packet_read(tx, sizeof tx, devices[d], (uint8_t)first,
+                                                         (uint8_t)count, true, &length);
                 TEST_ASSERT_EQUAL_INT(legal ? BQ_OK : BQ_E_ARG, status);
                 if (legal) {
                     TEST_ASSERT_EQUAL_UINT(count + 4u, length);
@@ -93,7 +93,8 @@ static void test_writes_refuse_what_must_not_be_sent(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_packet_write(tx, 4, 1, 0x30, 0x7d, true, NULL));
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_packet_write(tx, 4, 0x40, 0x30, 0x7d, true, &length));
     for (unsigned device = 1; device <= 0x3fu; device++) {
-        TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_packet_write(tx, 4, (uint8_t)device, 0x3b, 0x81, true, &length));
+        TEST_ASSERT_EQUAL_INT(BQ_E_ARG,
+                              bq76pl536_packet_write(tx, 4, (uint8_t)device, 0x3b, 0x81, true, &length));
     }
     TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_packet_write(tx, 4, 0, 0x3b, 0x00, true, &length));
     TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_packet_write(tx, 4, 0, 0x3b, 0x3f, true, &length));
@@ -156,8 +157,8 @@ static void test_a_dead_bus_never_passes(void)
 static void test_the_known_aliases(void)
 {
     static const uint8_t low[][3] = {{0x1e, 0x03, 12}, {0x1e, 0x01, 2}, {0x0b, 0x0f, 4}};
-    static const uint8_t high[][3] = {{0x1c, 0x00, 1},    {0x38, 0x00, 0x13}, {0x16, 0x0f, 4},   {0x0d, 0x22, 2},
-                                      {0x2e, 0x3b, 1},    {0x20, 0x40, 12},   {0x07, 0x00, 0x4c}};
+    static const uint8_t high[][3] = {{0x1c, 0x00, 1}, {0x38, 0x00, 0x13}, {0x16, 0x0f, 4},   {0x0d, 0x22, 2},
+                                      {0x2e, 0x3b, 1}, {0x20, 0x40, 12},   {0x07, 0x00, 0x4c}};
     for (unsigned i = 0; i < sizeof low / sizeof low[0]; i++) {
         read_request(low[i][0], low[i][1], low[i][2], true);
         answer(0x00, true);
@@ -251,8 +252,9 @@ static void test_check_refuses_packets_that_are_no_replies(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_packet_check(tx, rx, 4, true));
 }
 
-static const uint8_t good_burst[BQ76PL536_BURST_COUNT] = {0x81, 0x29, 0x79, 0x24, 0xdd, 0x1e, 0xb8, 0x21, 0xca, 0x24,
-                                                          0xdd, 0x25, 0xe3, 0x2a, 0x7e, 0x11, 0xaa, 0x11, 0xa6};
+static const uint8_t good_burst[BQ76PL536_BURST_COUNT] = {0x81, 0x29, 0x79, 0x24, 0xdd, 0x1e, 0xb8,
+                                                          0x21, 0xca, 0x24, 0xdd, 0x25, 0xe3, 0x2a,
+                                                          0x7e, 0x11, 0xaa, 0x11, 0xa6};
 
 /* proves: PL-VCELL-06, PL-CRC-13, PL-REG-02 */
 static void test_a_burst_that_cannot_be_true_is_refused(void)
@@ -262,7 +264,8 @@ static void test_a_burst_that_cannot_be_true_is_refused(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_burst_check(NULL));
     for (unsigned bit = 0; bit < 8u * sizeof burst; bit++) {
         unsigned byte = bit / 8u, mask = 1u << bit % 8u;
-        bool must_refuse = byte == 0u ? mask == 0x80u || mask == 0x10u : byte % 2u == 1u && (mask & 0xc0u) != 0u;
+        bool must_refuse =
+            byte == 0u ? mask == 0x80u || mask == 0x10u : byte % 2u == 1u && (mask & 0xc0u) != 0u;
         memcpy(burst, good_burst, sizeof burst);
         burst[byte] ^= (uint8_t)mask;
         TEST_ASSERT_EQUAL_INT(must_refuse ? BQ_E_IMPLAUSIBLE : BQ_OK, bq76pl536_burst_check(burst));

@@ -17,16 +17,19 @@ static void expect_write(uint8_t device, uint8_t reg, uint8_t value, bool crc, c
 {
     uint8_t expected[8], built[BQ76PL536_PACKET_MAX];
     size_t n = hex_bytes(text, expected, sizeof expected), length = 0;
-    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_write(built, sizeof built, device, reg, value, crc, &length));
+    TEST_ASSERT_EQUAL_INT(BQ_OK,
+                          bq76pl536_packet_write(built, sizeof built, device, reg, value, crc, &length));
     TEST_ASSERT_EQUAL_UINT_MESSAGE(n, length, text);
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(expected, built, n, text);
 }
 
-static void expect_read(uint8_t device, uint8_t first, uint8_t count, bool crc, const char *sent, const char *reply)
+static void expect_read(uint8_t device, uint8_t first, uint8_t count, bool crc, const char *sent,
+                        const char *reply)
 {
     uint8_t expected[BQ76PL536_PACKET_MAX], built[BQ76PL536_PACKET_MAX], rx[BQ76PL536_PACKET_MAX];
     size_t n = hex_bytes(sent, expected, sizeof expected), length = 0;
-    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_read(built, sizeof built, device, first, count, crc, &length));
+    TEST_ASSERT_EQUAL_INT(BQ_OK,
+                          bq76pl536_packet_read(built, sizeof built, device, first, count, crc, &length));
     TEST_ASSERT_EQUAL_UINT_MESSAGE(n, length, sent);
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(expected, built, n, sent);
 
@@ -40,8 +43,8 @@ static void expect_read(uint8_t device, uint8_t first, uint8_t count, bool crc, 
     }
 }
 
-/* proves: PL-VEC-02, PL-VEC-03, PL-VEC-04, PL-VEC-05, PL-VEC-06, PL-VEC-07, PL-PKT-01, PL-PKT-02, PL-PKT-03, PL-CRC-02,
- * PL-ADR-05 */
+/* proves: PL-VEC-02, PL-VEC-03, PL-VEC-04, PL-VEC-05, PL-VEC-06, PL-VEC-07, PL-PKT-01, PL-PKT-02, PL-PKT-03,
+ * PL-CRC-02, PL-ADR-05 */
 static void test_reset_and_addressing_writes(void)
 {
     expect_write(0x3f, 0x3c, 0xa5, true, "7f 3c a5 57");
@@ -58,8 +61,8 @@ static void test_reset_and_addressing_writes(void)
     expect_write(0x00, 0x3b, 0xbe, true, "01 3b be 36");
 }
 
-/* proves: PL-VEC-12, PL-VEC-13, PL-VEC-14, PL-VEC-15, PL-VEC-16, PL-VEC-17, PL-VEC-18, PL-VEC-19, PL-VEC-20, PL-VEC-21,
- * PL-VEC-23, PL-VEC-24, PL-CONV-09 */
+/* proves: PL-VEC-12, PL-VEC-13, PL-VEC-14, PL-VEC-15, PL-VEC-16, PL-VEC-17, PL-VEC-18, PL-VEC-19, PL-VEC-20,
+ * PL-VEC-21, PL-VEC-23, PL-VEC-24, PL-CONV-09 */
 static void test_conversion_and_configuration_writes(void)
 {
     expect_write(0x3f, 0x34, 0x01, true, "7f 34 01 8a");
@@ -123,7 +126,8 @@ static void test_programming_has_a_builder_of_its_own(void)
     static const uint8_t expected[4] = {0x03, 0x3f, 0x91, 0x79};
     uint8_t built[4] = {0};
     size_t length = 0;
-    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_packet_write(built, sizeof built, 0x01, 0x3f, 0x91, true, &length));
+    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE,
+                          bq76pl536_packet_write(built, sizeof built, 0x01, 0x3f, 0x91, true, &length));
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_program(built, sizeof built, 0x01, true, &length));
     TEST_ASSERT_EQUAL_UINT(4, length);
     TEST_ASSERT_EQUAL_MEMORY(expected, built, 4);
@@ -138,8 +142,8 @@ static void test_programming_has_a_builder_of_its_own(void)
     TEST_ASSERT_EQUAL_UINT(3, length);
 }
 
-/* proves: PL-VEC-08, PL-VEC-09, PL-VEC-10, PL-VEC-11, PL-VEC-33, PL-VEC-34, PL-VEC-35, PL-VEC-36, PL-VEC-37, PL-PKT-04,
- * PL-PKT-06, PL-CRC-03, PL-AMB-05, PL-SPI-09 */
+/* proves: PL-VEC-08, PL-VEC-09, PL-VEC-10, PL-VEC-11, PL-VEC-33, PL-VEC-34, PL-VEC-35, PL-VEC-36, PL-VEC-37,
+ * PL-PKT-04, PL-PKT-06, PL-CRC-03, PL-AMB-05, PL-SPI-09 */
 static void test_short_reads(void)
 {
     expect_read(0x01, 0x3b, 1, true, "02 3b 01 00 00", "81 ba");
@@ -153,7 +157,8 @@ static void test_short_reads(void)
     expect_read(0x01, 0x0f, 2, true, "02 0f 02 00 00 00", "11 16 e0");
 }
 
-/* proves: PL-VEC-38, PL-VEC-39, PL-VEC-40, PL-VEC-41, PL-VEC-42, PL-VEC-43, PL-VEC-44, PL-VEC-45, PL-PKT-07, PL-PKT-08 */
+/* proves: PL-VEC-38, PL-VEC-39, PL-VEC-40, PL-VEC-41, PL-VEC-42, PL-VEC-43, PL-VEC-44, PL-VEC-45, PL-PKT-07,
+ * PL-PKT-08 */
 static void test_block_reads(void)
 {
     expect_read(0x01, 0x03, 12, true, "02 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00",
@@ -175,8 +180,9 @@ static void test_a_frame_of_real_silicon_is_accepted(void)
 {
     static const struct {
         uint8_t reg, value;
-    } content[] = {{0x00, 0x61}, {0x20, 0x80}, {0x21, 0x0b}, {0x22, 0x30}, {0x23, 0x0f}, {0x40, 0x10}, {0x41, 0x80},
-                   {0x42, 0x31}, {0x43, 0x81}, {0x44, 0x08}, {0x45, 0x81}, {0x46, 0x66}, {0x47, 0xff}, {0x48, 0x15}};
+    } content[] = {{0x00, 0x61}, {0x20, 0x80}, {0x21, 0x0b}, {0x22, 0x30}, {0x23, 0x0f},
+                   {0x40, 0x10}, {0x41, 0x80}, {0x42, 0x31}, {0x43, 0x81}, {0x44, 0x08},
+                   {0x45, 0x81}, {0x46, 0x66}, {0x47, 0xff}, {0x48, 0x15}};
     uint8_t tx[BQ76PL536_PACKET_MAX], rx[BQ76PL536_PACKET_MAX] = {0};
     size_t length = 0;
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_read(tx, sizeof tx, 0x00, 0x00, 0x4c, true, &length));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Thresholds, delays and control values: every code in both directions, every value without a code refused. */
+/* Thresholds, delays and control values: every code in both directions, every value
+ * without a code refused. */
 #include "bqhost/bq76pl536_convert.h"
 #include "unity.h"
 
@@ -11,10 +12,10 @@ void tearDown(void)
 {
 }
 
-/* All legal values of an encoder below `limit` are first, first + step, ... last; everything else has no code or is out of range,
- * and leaves the output alone. */
-static void expect_encoding(bq_status (*encode)(uint32_t, uint8_t *), uint32_t first, uint32_t step, uint32_t last,
-                            uint8_t first_code, uint32_t limit)
+/* All legal values of an encoder below `limit` are first, first + step, ... last; everything else has no code
+ * or is out of range, and leaves the output alone. */
+static void expect_encoding(bq_status (*encode)(uint32_t, uint8_t *), uint32_t first, uint32_t step,
+                            uint32_t last, uint8_t first_code, uint32_t limit)
 {
     for (uint32_t value = 0; value < limit; value++) {
         uint8_t code = 0xee;
@@ -70,7 +71,8 @@ static void test_undervoltage_thresholds(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_cuv_mv(0, NULL));
 }
 
-/* The mistake: volts in binary floating point, truncated. It loses at least a dozen of the 61 codes, so the tests above meet it. */
+/* The mistake: volts in binary floating point, truncated. It loses at least a dozen of the 61 codes, so the
+ * tests above meet it. */
 /* proves: PL-NUM-13 */
 static void test_truncated_floating_point_would_be_noticed(void)
 {
@@ -137,9 +139,10 @@ static void test_temperature_delay(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_ott_ms(0, NULL));
 }
 
-/* Each row: code, temperature, resistance and both ADC codes at the set ratio, both ADC codes at the clear ratio. */
-/* proves: PL-OT-01, PL-NUM-17, PL-NUM-18, PL-NUM-19, PL-NUM-20, PL-NUM-21, PL-NUM-22, PL-NUM-23, PL-NUM-24, PL-NUM-25,
- * PL-NUM-26, PL-NUM-27 */
+/* Each row: code, temperature, resistance and both ADC codes at the set ratio, both ADC codes at the clear
+ * ratio. */
+/* proves: PL-OT-01, PL-NUM-17, PL-NUM-18, PL-NUM-19, PL-NUM-20, PL-NUM-21, PL-NUM-22, PL-NUM-23, PL-NUM-24,
+ * PL-NUM-25, PL-NUM-26, PL-NUM-27 */
 static void test_overtemperature_trip_points(void)
 {
     static const struct {
@@ -188,17 +191,18 @@ static void test_every_other_trip_temperature_is_refused(void)
 {
     for (unsigned celsius = 0; celsius < 256u; celsius++) {
         uint8_t code = 0xee;
-        bq_status expected = celsius == 0u                      ? BQ_OK
-                             : celsius < 40u || celsius > 90u   ? BQ_E_RANGE
-                             : celsius % 5u != 0u               ? BQ_E_NO_CODE
-                                                                : BQ_OK;
+        bq_status expected = celsius == 0u                    ? BQ_OK
+                             : celsius < 40u || celsius > 90u ? BQ_E_RANGE
+                             : celsius % 5u != 0u             ? BQ_E_NO_CODE
+                                                              : BQ_OK;
         TEST_ASSERT_EQUAL_INT(expected, bq76pl536_ot_code((uint8_t)celsius, &code));
         TEST_ASSERT_EQUAL_HEX8(expected != BQ_OK ? 0xeeu : celsius == 0u ? 0u : celsius / 5u - 7u, code);
         TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_ot_code((uint8_t)celsius, NULL));
     }
     for (unsigned code = 0; code < 256u; code++) {
         uint8_t celsius = 0xee;
-        TEST_ASSERT_EQUAL_INT(code <= 11u ? BQ_OK : BQ_E_RANGE, bq76pl536_ot_celsius((uint8_t)code, &celsius));
+        TEST_ASSERT_EQUAL_INT(code <= 11u ? BQ_OK : BQ_E_RANGE,
+                              bq76pl536_ot_celsius((uint8_t)code, &celsius));
         TEST_ASSERT_EQUAL_UINT(code == 0u ? 0u : code <= 11u ? 35u + 5u * code : 0xeeu, celsius);
     }
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_ot_celsius(1, NULL));
@@ -277,7 +281,8 @@ static void test_function_config(void)
     };
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         uint8_t value = 0xee;
-        TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_function_config(rows[i].adct, rows[i].cells, rows[i].brick, rows[i].reg50, &value));
+        TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_function_config(rows[i].adct, rows[i].cells, rows[i].brick,
+                                                               rows[i].reg50, &value));
         TEST_ASSERT_EQUAL_HEX8(rows[i].value, value);
     }
 }
@@ -290,7 +295,8 @@ static void test_impossible_parts_are_refused(void)
         bq_status expected = cells >= 3u && cells <= 6u ? BQ_OK : BQ_E_CELLS;
         uint8_t ignored;
         TEST_ASSERT_EQUAL_INT(expected, bq76pl536_adc_control((uint8_t)cells, 0, true, true, &ignored));
-        TEST_ASSERT_EQUAL_INT(expected, bq76pl536_function_config(BQ76PL536_ADCT_6US, (uint8_t)cells, true, true, &ignored));
+        TEST_ASSERT_EQUAL_INT(
+            expected, bq76pl536_function_config(BQ76PL536_ADCT_6US, (uint8_t)cells, true, true, &ignored));
     }
     TEST_ASSERT_EQUAL_INT(BQ_E_CELLS, bq76pl536_adc_control(2, 0, true, true, &value));
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_adc_control(6, 4, true, true, &value));
@@ -307,7 +313,8 @@ static void test_conversion_time(void)
         for (unsigned adct = 0; adct < 4u; adct++) {
             uint16_t nominal = 0, worst = 0;
             unsigned t = 3u << adct;
-            TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_conversion_us(n, (bq76pl536_adct)adct, true, &nominal, &worst));
+            TEST_ASSERT_EQUAL_INT(BQ_OK,
+                                  bq76pl536_conversion_us(n, (bq76pl536_adct)adct, true, &nominal, &worst));
             TEST_ASSERT_EQUAL_UINT((n + 1u) * t, nominal);
             TEST_ASSERT_GREATER_OR_EQUAL((n + 1u) * t * 11u + 20u, 10u * worst);
             TEST_ASSERT_LESS_THAN((n + 1u) * t * 11u + 30u, 10u * worst);
@@ -347,9 +354,9 @@ static void test_spi_clock_by_stack_size(void)
     static const struct {
         uint8_t devices;
         uint32_t max_khz, default_hz;
-    } rows[] = {{1, 1000, 250000}, {2, 1000, 250000}, {4, 1000, 250000}, {6, 909, 250000},  {8, 689, 250000}, {12, 465, 250000},
-                {16, 350, 250000}, {17, 0, 125000},   {24, 235, 125000}, {32, 176, 125000}, {33, 0, 62500},   {48, 118, 62500},
-                {62, 91, 62500}};
+    } rows[] = {{1, 1000, 250000}, {2, 1000, 250000}, {4, 1000, 250000}, {6, 909, 250000},  {8, 689, 250000},
+                {12, 465, 250000}, {16, 350, 250000}, {17, 0, 125000},   {24, 235, 125000}, {32, 176, 125000},
+                {33, 0, 62500},    {48, 118, 62500},  {62, 91, 62500}};
     uint32_t hz = 7;
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_spi_max_hz(rows[i].devices, &hz));

@@ -51,14 +51,16 @@ static void test_known_points(void)
     }
 }
 
-/* From the converter code of either input to a temperature: the whole path, every code inside the range of the table. */
+/* From the converter code of either input to a temperature: the whole path, every code inside the range of
+ * the table. */
 /* proves: PL-TS-01, PL-TS-02, PL-TS-09 */
 static void test_from_code_to_temperature(void)
 {
     for (unsigned code = 1; code < 0x3fffu; code++) {
         uint32_t ohms1 = 0, ohms2 = 0;
         int16_t dc = 0;
-        double exact1 = 1820.0 * 33046.0 / (code + 2.0) - 3290.0, exact2 = 1820.0 * 33068.0 / (code + 9.0) - 3290.0;
+        double exact1 = 1820.0 * 33046.0 / (code + 2.0) - 3290.0,
+               exact2 = 1820.0 * 33068.0 / (code + 9.0) - 3290.0;
         TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_ts_ohms(1, (uint16_t)code, &ohms1));
         TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_ts_ohms(2, (uint16_t)code, &ohms2));
         if (bq_thermistor_dc(&bq_thermistor_103at, ohms1, &dc) == BQ_OK) {
@@ -100,7 +102,8 @@ static void test_a_table_of_two_extreme_points(void)
 static void test_impossible_tables_are_refused(void)
 {
     static const uint32_t ohms[2] = {2000, 1000};
-    const bq_thermistor none = {NULL, 2, 0, 10}, one = {ohms, 1, 0, 10}, still = {ohms, 2, 0, 0}, back = {ohms, 2, 0, -10};
+    const bq_thermistor none = {NULL, 2, 0, 10}, one = {ohms, 1, 0, 10}, still = {ohms, 2, 0, 0},
+                        back = {ohms, 2, 0, -10};
     int16_t dc = 4711;
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq_thermistor_dc(NULL, 1500, &dc));
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq_thermistor_dc(&none, 1500, &dc));

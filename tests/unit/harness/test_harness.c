@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The harness lets through what is true; that it stops what is false is proved by the canary program beside this file. */
+/* The harness lets through what is true; that it stops what is false is proved by the canary program beside
+ * this file. */
 #include "unity.h"
 
 static int set_ups, tear_downs;
