@@ -6,7 +6,7 @@
 /* proves: PL-SPI-05 */
 static void test_chip_select_resynchronises_every_receiver(void)
 {
-    static const uint8_t write[4] = {0x07, 0x30, 0x7d, 0x2f};
+    static const uint8_t write[4] = {0x07, 0x30, 0x7d, 0x9b};
 
     bench_stack(3);
     bench_quiet(3);
@@ -56,7 +56,7 @@ static void test_only_data_and_crc_of_the_own_read_are_driven(void)
     bench_address(2);
     expect("spi 04 3b 01 00 00", "ok -- -- -- 82 c7");
     expect("spi 06 3b 01 00 00", "ok -- -- -- -- --"); /* nobody has address 3 */
-    expect("spi 05 30 05 fb", "ok -- -- -- --");
+    expect("spi 05 30 05 22", "ok -- -- -- --");
     expect("spi 7f 31 00 cc", "ok -- -- -- --");
     expect("spi 7e 00 01 00 00", "ok -- -- -- -- --");
     expect("spi 04", "ok --");
