@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-typedef struct words_and_place {
+typedef struct context {
     const ps_words *w;
     const ps_scenario *s;
     ps_place at;

@@ -41,6 +41,26 @@ static bool within(const ps_words *w, int i, uint64_t *t, uint64_t *t0)
     return ps_time_words(w, &i, t0) && i == w->count;
 }
 
+int ps_state_number(const char *name)
+{
+    for (int i = BQ_PACK_INIT; i <= BQ_PACK_SLEEP; i++) {
+        if (strcmp(name, bq_pack_state_name((bq_pack_state_id)i)) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int ps_fault_number(const char *name)
+{
+    for (int i = 0; i < BQ_FAULT_COUNT; i++) {
+        if (strcmp(name, bq_pack_fault_name((bq_pack_fault)i)) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
 static int expect_state(const context *c, ps_expect *x)
 {
     x->kind = PS_EXP_STATE;

@@ -79,8 +79,10 @@ typedef struct ps_scenario {
     sim_cells_load load;
     bool has_load_file;
     bool request_on;
+    bool eprom_fast;   /**< FUNCTION_CONFIG in the EPROM selects 6 us conversions; otherwise blank */
     bq_app_config app;
     bq76pl536_config driver;
+    bq_ocv_point soc_points[SIM_OCV_POINTS]; /**< the curve as the firmware is told it */
     uint8_t cells_of[BQ76PL536_MAX_DEVICES];
     ps_place pack_at; /**< for errors that concern the whole configuration */
     uint64_t duration, period;
@@ -89,6 +91,7 @@ typedef struct ps_scenario {
     ps_event event[PS_EVENTS];
     int expects;
     ps_expect expect[PS_EXPECTS];
+    int expects_cut; /**< expectations beyond a run that the command line shortened */
 } ps_scenario;
 
 /** Where files named in a scenario are looked for, in this order; NULL entries are skipped. */
@@ -115,15 +118,15 @@ int ps_expect_parse(ps_expect *x, const ps_scenario *s, const char *text, ps_pla
 /** The latest moment an expectation looks at; 0 for those judged at the end. */
 uint64_t ps_expect_deadline(const ps_expect *x);
 
-/** Defaults of a chemistry, then one key of [limits]. ps_limit_set returns 0, 1 for an unknown key, -1 with the error. */
+/** Defaults of a chemistry for the pack controller and the driver; s->devices, cells and period are set. */
 void ps_limits_default(ps_scenario *s, bool lfp);
-int ps_limit_set(ps_scenario *s, const char *key, const char *value, ps_place at, ps_error *e);
-/** Name of key i, NULL after the last. */
+/** All of [limits], then checks the whole configuration with the firmware's own validators. 0, or -1 naming the field. */
+int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e);
+/** Name of key i of [limits] for help; NULL past the end. */
 const char *ps_limit_name(int i);
 
-/** Names of the scenario language for states; -1 when unknown. */
+/** Numbers of the firmware's names; -1 when unknown. */
 int ps_state_number(const char *name);
-const char *ps_state_name(int state);
 int ps_fault_number(const char *name);
 
 #endif

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* packsim: the pack controller firmware on a simulated pack. */
+#include "ps_options.h"
+#include "ps_run.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { EXIT_PASS = 0, EXIT_FAILED = 1, EXIT_UNUSABLE = 2 };
+
+typedef struct session {
+    ps_options options;
+    ps_search search;
+    char scenario_path[PS_PATH];
+    ps_ini ini;
+    ps_scenario scenario;
+    ps_rig rig;
+    ps_judge judge;
+    ps_csv csv;
+    ps_run run;
+} session;
+
+static void directory_of(char *dir, size_t size, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    (void)snprintf(dir, size, "%.*s", slash != NULL ? (int)(slash - path) : 1, slash != NULL ? path : ".");
+}
+
+static int load(session *x, const char *argv0, ps_error *e)
+{
+    char scenarios[PS_PATH];
+    ps_home(scenarios, sizeof scenarios, argv0, "scenarios");
+    ps_home(x->search.data_dir, sizeof x->search.data_dir, argv0, "data");
+    ps_find_scenario(x->scenario_path, sizeof x->scenario_path, x->options.scenario, scenarios);
+    directory_of(x->search.scenario_dir, sizeof x->search.scenario_dir, x->scenario_path);
+    if (ps_ini_read(&x->ini, x->scenario_path, e) != 0) {
+        return -1;
+    }
+    for (int i = 0; i < x->options.sets; i++) {
+        if (ps_ini_set(&x->ini, x->options.set[i], i + 1, e) != 0) {
+            return -1;
+        }
+    }
+    return ps_scenario_build(&x->scenario, &x->ini, &x->search, &x->options.override, e);
+}
+
+static int prepare(session *x, ps_error *e)
+{
+    if (ps_rig_init(&x->rig, &x->scenario, e) != 0) {
+        return -1;
+    }
+    ps_judge_init(&x->judge, &x->scenario);
+    x->run.rig = &x->rig;
+    x->run.judge = &x->judge;
+    x->run.progress = !x->options.quiet && isatty(STDERR_FILENO) == 1;
+    if (x->options.vcd != NULL && ps_rig_record(&x->rig, x->options.vcd) != 0) {
+        return ps_fail(e, (ps_place){x->options.vcd, 0}, "%s", strerror(errno));
+    }
+    if (x->options.csv != NULL) {
+        if (ps_csv_open(&x->csv, x->options.csv, x->scenario.cells) != 0) {
+            return ps_fail(e, (ps_place){x->options.csv, 0}, "%s", strerror(errno));
+        }
+        x->run.csv = &x->csv;
+    }
+    return 0;
+}
+
+static int finish(session *x)
+{
+    int status = ps_summary(stdout, &x->run, x->options.quiet) ? EXIT_PASS : EXIT_FAILED;
+    if (x->run.csv != NULL && ps_csv_close(&x->csv) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.csv);
+        status = EXIT_UNUSABLE;
+    }
+    if (ps_rig_close(&x->rig) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.vcd);
+        status = EXIT_UNUSABLE;
+    }
+    return status;
+}
+
+static int list(const char *argv0)
+{
+    char scenarios[PS_PATH];
+    ps_home(scenarios, sizeof scenarios, argv0, "scenarios");
+    if (ps_list(stdout, scenarios) == 0) {
+        return EXIT_PASS;
+    }
+    (void)fprintf(stderr, "%s:0: %s\n", scenarios, strerror(errno));
+    return EXIT_UNUSABLE;
+}
+
+int main(int argc, char **argv)
+{
+    static ps_error error;
+    session *x = calloc(1, sizeof *x);
+    int status = EXIT_UNUSABLE;
+    if (x == NULL) {
+        (void)fputs("packsim:0: out of memory\n", stderr);
+        return status;
+    }
+    if (ps_options_parse(&x->options, argc, argv, &error) != 0) {
+        (void)fprintf(stderr, "%s\n", error.text);
+    } else if (x->options.help) {
+        ps_options_help(stdout);
+        status = EXIT_PASS;
+    } else if (x->options.list) {
+        status = list(argv[0]);
+    } else if (load(x, argv[0], &error) != 0 || prepare(x, &error) != 0) {
+        (void)fprintf(stderr, "%s\n", error.text);
+    } else {
+        ps_run_all(&x->run);
+        status = finish(x);
+    }
+    free(x);
+    return status;
+}

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The [limits] section: fields of the pack controller, of the super-loop and of the driver, under the firmware's own names. */
+#include "ps_scenario.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Fields that the pack controller has no setter for. */
+static const struct {
+    const char *name;
+    size_t offset, size;
+} fields[] = {
+#define DRIVER(name, member)                                                                                          \
+    {name, offsetof(ps_scenario, driver.member), sizeof(((ps_scenario *)NULL)->driver.member)}
+    DRIVER("cov_mv", cov_mv),
+    DRIVER("cuv_mv", cuv_mv),
+    DRIVER("cov_delay_us", cov_delay_us),
+    DRIVER("cuv_delay_us", cuv_delay_us),
+    DRIVER("ot1_c", ot_c[0]),
+    DRIVER("ot2_c", ot_c[1]),
+    DRIVER("ot_delay_ms", ot_delay_ms),
+    DRIVER("spi_hz", spi_hz),
+    DRIVER("balance_timer_s", balance_timer_s),
+    DRIVER("balance_settle_ms", balance_settle_ms),
+    DRIVER("sensor_settle_ms", sensor_settle_ms),
+    DRIVER("scrub_period_ms", scrub_period_ms),
+    DRIVER("wire_limit_mv", wire_limit_mv),
+    DRIVER("frozen_scans", frozen_scans),
+    DRIVER("use_conv_pin", use_conv_pin),
+    DRIVER("variant_a", variant_a),
+    DRIVER("allow_partial", allow_partial),
+    {"retry_ms", offsetof(ps_scenario, app.retry_ms), sizeof(uint32_t)},
+    {"soc_rest_ma", offsetof(ps_scenario, app.pack.soc.rest_ma), sizeof(int32_t)},
+    {"soc_rest_ms", offsetof(ps_scenario, app.pack.soc.rest_ms), sizeof(uint32_t)},
+    {"soc_gap_ms", offsetof(ps_scenario, app.pack.soc.gap_ms), sizeof(uint32_t)},
+#undef DRIVER
+};
+
+#define FIELDS ((int)(sizeof fields / sizeof fields[0]))
+
+const char *ps_limit_name(int i)
+{
+    if (i < FIELDS) {
+        return fields[i].name;
+    }
+    return bq_pack_config_field((uint16_t)(i - FIELDS));
+}
+
+/* 0, 1 = no such field, -1 = outside its range. */
+static int set_field(ps_scenario *s, const char *key, int value)
+{
+    for (int i = 0; i < FIELDS; i++) {
+        if (strcmp(key, fields[i].name) != 0) {
+            continue;
+        }
+        unsigned char *p = (unsigned char *)s + fields[i].offset;
+        if (value < 0 || (fields[i].size < sizeof value && value >> (8u * (unsigned)fields[i].size) != 0)) {
+            return -1;
+        }
+        bool is_bool = strcmp(key, "use_conv_pin") == 0 || strcmp(key, "variant_a") == 0 ||
+                       strcmp(key, "allow_partial") == 0;
+        if (is_bool && value > 1) {
+            return -1;
+        }
+        uint8_t u8 = (uint8_t)value;
+        uint16_t u16 = (uint16_t)value;
+        uint32_t u32 = (uint32_t)value;
+        const void *from = fields[i].size == 1 ? (const void *)&u8 : fields[i].size == 2 ? (const void *)&u16 : &u32;
+        memcpy(p, from, fields[i].size);
+        return 0;
+    }
+    return 1;
+}
+
+static int apply_key(ps_scenario *s, const char *key, const char *text, ps_place at, ps_error *e)
+{
+    int value = 0;
+    int known = set_field(s, key, 0);
+    int32_t old = 0;
+    if (known == 1 && bq_pack_config_get(&s->app.pack, key, &old) != BQ_OK) {
+        return ps_fail(e, at, "unknown key %s in [limits]", key);
+    }
+    if (strcmp(key, "cells") == 0 || strcmp(key, "sensors") == 0 || strcmp(key, "modules") == 0) {
+        return ps_fail(e, at, "%s follows from [pack]", key);
+    }
+    if (!ps_int(text, &value)) {
+        return ps_fail(e, at, "%s: %s is not a whole number", key, text);
+    }
+    bool refused = known != 1 ? set_field(s, key, value) != 0 : bq_pack_config_set(&s->app.pack, key, value) != BQ_OK;
+    return refused ? ps_fail(e, at, "%s: %d is outside its range", key, value) : 0;
+}
+
+/* ---- defaults ------------------------------------------------------------------------------- */
+
+static void soc_default(ps_scenario *s)
+{
+    for (int i = 0; i < s->ocv.points; i++) {
+        s->soc_points[i].permille = (uint16_t)(s->ocv.soc[i] * 10.0 + 0.5);
+        s->soc_points[i].mv = (uint16_t)(s->ocv.v[i] * 1000.0 + 0.5);
+    }
+    bq_soc_config *c = &s->app.pack.soc;
+    c->ocv = s->soc_points;
+    c->points = (uint16_t)s->ocv.points;
+    c->capacity_mah = (uint32_t)(s->world.capacity_ah * 1000.0 + 0.5);
+    c->rest_ma = 500;
+    c->rest_ms = 2000;
+    c->gap_ms = 5000;
+    if (!bq_soc_config_ok(c)) {
+        memset(c, 0, sizeof *c); /* a curve that the firmware cannot use: no state of charge */
+    }
+}
+
+void ps_limits_default(ps_scenario *s, bool lfp)
+{
+    uint16_t cells = (uint16_t)s->cells, sensors = (uint16_t)(s->devices * SIM_CELLS_SENSORS);
+    uint16_t modules = (uint16_t)s->devices;
+    s->app.pack = lfp ? bq_pack_config_lfp(cells, sensors, modules) : bq_pack_config_nmc(cells, sensors, modules);
+    s->app.period_ms = (uint32_t)(s->period / PS_MS);
+    uint32_t patience = 4u * s->app.period_ms;
+    if (s->app.pack.comm_timeout_ms < patience && patience <= 30000u) {
+        s->app.pack.comm_timeout_ms = (uint16_t)patience;
+    }
+    soc_default(s);
+    bq76pl536_config *d = &s->driver;
+    d->devices = (uint8_t)s->devices;
+    d->cells = s->cells_of;
+    d->sensors = SIM_CELLS_SENSORS;
+    d->thermistor = &bq_thermistor_103at;
+    d->cov_mv = lfp ? 3850 : 4350;
+    d->cuv_mv = lfp ? 2000 : 2500;
+    d->cov_delay_us = 500000;
+    d->cuv_delay_us = 500000;
+    d->ot_c[0] = 70;
+    d->ot_c[1] = 70;
+    d->ot_delay_ms = 500;
+    uint32_t timer_s = s->app.period_ms * 125u / 90000u + 2u;
+    d->balance_timer_s = (uint8_t)(timer_s < 4u ? 4u : timer_s);
+}
+
+/* ---- the firmware's own validators ------------------------------------------------------------ */
+
+static bq_status no_start(void *ctx, const uint8_t *tx, uint8_t *rx, size_t len)
+{
+    (void)ctx;
+    (void)tx;
+    (void)rx;
+    (void)len;
+    return BQ_E_BUS;
+}
+
+static bq_status no_poll(void *ctx)
+{
+    (void)ctx;
+    return BQ_E_BUS;
+}
+
+static bq_status no_clock(void *ctx, uint32_t hz)
+{
+    (void)ctx;
+    (void)hz;
+    return BQ_OK;
+}
+
+static uint32_t no_time(void *ctx)
+{
+    (void)ctx;
+    return 0;
+}
+
+static bq_status check_driver(const bq76pl536_config *config)
+{
+    static const bq_spi_ops ops = {no_start, no_poll, no_clock};
+    static bq76pl536 d;
+    static bq76pl536_device devices[BQ76PL536_MAX_DEVICES];
+    const bq_spi spi = {&ops, NULL};
+    const bq_clock clock = {no_time, NULL};
+    return bq76pl536_init(&d, config, &spi, NULL, &clock, devices, BQ76PL536_MAX_DEVICES);
+}
+
+static ps_place place_of(ps_scenario *s, ps_ini *ini, const char *key)
+{
+    ps_place at = s->pack_at;
+    (void)ps_ini_get(ini, "limits", key, &at);
+    return at;
+}
+
+/* Which field is to blame: the one that is refused already when it alone differs from the defaults. */
+static int blame(ps_scenario *s, ps_ini *ini, const ps_scenario *plain, bq_status status, ps_error *e)
+{
+    if (status == BQ_E_COV_CUV) {
+        bool cuv = false;
+        for (int i = 0; i < ini->count; i++) {
+            cuv = cuv || strcmp(ini->entry[i].key, "cuv_mv") == 0;
+        }
+        return ps_fail(e, place_of(s, ini, cuv ? "cuv_mv" : "cov_mv"),
+                       "cov_mv %u and cuv_mv %u are less than 300 mV apart (%s)", (unsigned)s->driver.cov_mv,
+                       (unsigned)s->driver.cuv_mv, bq_status_name(status));
+    }
+    static ps_scenario one;
+    for (int i = 0; i < ini->count; i++) {
+        const ps_ini_entry *x = &ini->entry[i];
+        int value = 0;
+        if (strcmp(x->section, "limits") != 0 || !ps_int(x->value, &value)) {
+            continue;
+        }
+        one = *plain;
+        if (set_field(&one, x->key, value) == 0 && check_driver(&one.driver) == status) {
+            return ps_fail(e, x->at, "%s: %d is refused by the driver (%s)", x->key, value, bq_status_name(status));
+        }
+    }
+    return ps_fail(e, s->pack_at, "the driver refuses this configuration (%s)", bq_status_name(status));
+}
+
+int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e)
+{
+    static ps_scenario plain;
+    plain = *s;
+    for (int i = 0; i < ini->count; i++) {
+        ps_ini_entry *x = &ini->entry[i];
+        if (strcmp(x->section, "limits") == 0) {
+            x->used = true;
+            if (apply_key(s, x->key, x->value, x->at, e) != 0) {
+                return -1;
+            }
+        }
+    }
+    s->app.balance_timer_s = s->driver.balance_timer_s;
+    const char *field = NULL;
+    bq_status status = bq_app_config_validate(&s->app, &field);
+    if (status != BQ_OK) {
+        return ps_fail(e, place_of(s, ini, field != NULL ? field : ""), "%s: %s",
+                       field != NULL ? field : "limits", bq_status_name(status));
+    }
+    status = check_driver(&s->driver);
+    return status == BQ_OK ? 0 : blame(s, ini, &plain, status, e);
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "ps_options.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int usage(ps_error *e, const char *option, int i, const char *reason)
+{
+    return ps_fail(e, (ps_place){option, i}, "%s", reason);
+}
+
+static int take_duration(ps_options *o, const char *text, int i, ps_error *e)
+{
+    if (!ps_time(text, &o->override.duration) || o->override.duration == 0) {
+        return usage(e, "--duration", i, "not a time (number and us, ms, s, min or h)");
+    }
+    return 0;
+}
+
+static int take_seed(ps_options *o, const char *text, int i, ps_error *e)
+{
+    char *end;
+    o->override.seed = strtoull(text, &end, 10);
+    o->override.has_seed = true;
+    return *text >= '0' && *text <= '9' && *end == '\0' ? 0 : usage(e, "--seed", i, "not a whole number");
+}
+
+static int take_set(ps_options *o, const char *text, int i, ps_error *e)
+{
+    if (o->sets == PS_SETS) {
+        return usage(e, "--set", i, "too many");
+    }
+    o->set[o->sets++] = text;
+    return 0;
+}
+
+static int take_current(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->override.current_file = text;
+    return 0;
+}
+
+static int take_csv(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->csv = text;
+    return 0;
+}
+
+static int take_vcd(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->vcd = text;
+    return 0;
+}
+
+static int take_later(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)o;
+    (void)text;
+    return usage(e, "command line", i, "--report, --can and --watch are not supported yet");
+}
+
+static const struct {
+    const char *name;
+    bool argument;
+    int (*take)(ps_options *o, const char *text, int i, ps_error *e);
+} options[] = {
+    {"--duration", true, take_duration}, {"--current", true, take_current}, {"--csv", true, take_csv},
+    {"--seed", true, take_seed},         {"--set", true, take_set},         {"--vcd", true, take_vcd},
+    {"--report", true, take_later},      {"--can", true, take_later},       {"--watch", false, take_later},
+};
+
+static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e)
+{
+    for (size_t k = 0; k < sizeof options / sizeof options[0]; k++) {
+        if (strcmp(argv[*i], options[k].name) != 0) {
+            continue;
+        }
+        if (!options[k].argument) {
+            return options[k].take(o, NULL, *i, e);
+        }
+        *i += 1;
+        return *i < argc ? options[k].take(o, argv[*i], *i, e) : usage(e, argv[*i - 1], *i - 1, "needs an argument");
+    }
+    return usage(e, argv[*i], *i, "unknown option (see packsim --help)");
+}
+
+int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
+{
+    memset(o, 0, sizeof *o);
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--quiet") == 0) {
+            o->quiet = true;
+        } else if (strcmp(argv[i], "--list") == 0) {
+            o->list = true;
+        } else if (strcmp(argv[i], "--help") == 0) {
+            o->help = true;
+        } else if (argv[i][0] == '-') {
+            if (take_option(o, argc, argv, &i, e) != 0) {
+                return -1;
+            }
+        } else if (o->scenario != NULL) {
+            return usage(e, argv[i], i, "more than one scenario");
+        } else {
+            o->scenario = argv[i];
+        }
+    }
+    if (o->scenario == NULL && !o->list && !o->help) {
+        return usage(e, "command line", 0, "no scenario (see packsim --help)");
+    }
+    return 0;
+}
+
+void ps_options_help(FILE *to)
+{
+    (void)fputs(
+        "packsim SCENARIO.ini [--duration T] [--current FILE.csv] [--csv FILE] [--vcd FILE] [--seed N]\n"
+        "        [--set SECTION.KEY=VALUE]... [--quiet]\n"
+        "packsim --list\n"
+        "\n"
+        "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, or the name\n"
+        "of one of the scenarios that --list shows. Times carry a unit: us, ms, s, min, h.\n"
+        "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing simulated.\n"
+        "--duration beyond or short of the scenario's own: expectations that look beyond a shortened run are left out.\n"
+        "\n"
+        "[pack]   monitor (bq76pl536), devices, cells, chemistry (nmc, lfp, FILE.csv), capacity_ah (5), resistance_mohm (2),\n"
+        "         soc_percent (50), soc_spread_percent (0), ambient_c (25), bleed_ohm (33), shunt_mohm (0.1),\n"
+        "         eprom (blank; fast = the chips wake up from a reset with 6 us conversions selected)\n"
+        "[run]    duration (60 s), period (100 ms), seed (1)\n"
+        "[load]   current_a (0) or file; request on|off (off)\n"
+        "[events] T = ACTION: cell N volts V; cell N free; sensor N celsius T; current A; current file; request on|off;\n"
+        "         break above K; mend; device K off|on; wire N open|closed; spi flip P; bus dead 00|ff; bus free;\n"
+        "         mcu reset; contactor weld\n"
+        "         Two sensors per device. Wire N is the sense wire at the positive end of cell N, on the side of the device\n"
+        "         that measures this cell; wire 0 is the lowest of the pack.\n"
+        "[expect] state STATE at T; fault NAME [cell N | device K | sensor N] within T of T0; no fault before T; no faults;\n"
+        "         discovered K at T; spread below X mv at T; soc error below X percent; measurement error below X mv;\n"
+        "         outputs off within T of T0; recovered at T; misuse none; speed above X\n"
+        "         \"recovered\": standby or on, no fault, every device found and every value valid. Errors are the worst of the\n"
+        "         run. Spread is the true one.\n",
+        to);
+    (void)fputs("[limits] integers under the firmware's own names:\n", to);
+    int column = 0;
+    for (int i = 0; ps_limit_name(i) != NULL; i++) {
+        column += fprintf(to, "%s %s", column == 0 ? "        " : ",", ps_limit_name(i));
+        if (column > 90) {
+            (void)fputs(",\n", to);
+            column = 0;
+        }
+    }
+    (void)fputc('\n', to);
+}
