@@ -87,6 +87,7 @@ int sim_cells_init(sim_cells *c, const sim_cells_config *config)
     }
     for (int m = 0; m < config->modules; m++) {
         c->t_module[m] = config->ambient_c;
+        c->first_cell[m] = m > 0 ? c->first_cell[m - 1] + config->cells_in_module[m - 1] : 0;
     }
     for (int s = 0; s < SIM_CELLS_MODULES * SIM_CELLS_SENSORS; s++) {
         c->forced_t[s] = SIM_CELLS_T_MAX + 1.0;
@@ -129,14 +130,28 @@ static void heat(sim_cells *c, double dt_s, double mean_square)
     }
 }
 
-static void take_bleed(sim_cells *c, double percent_per_as)
+void sim_cells_take_bleed(sim_cells *c, int module, uint32_t mask)
 {
-    double drop = c->config.resistance_ohm / c->config.bleed_ohm;
-    for (int i = 0; i < c->cells; i++) {
-        c->soc[i] -= c->volts[i] / c->config.bleed_ohm * c->bleed_s[i] * percent_per_as;
-        c->bleed_s[i] = 0.0;
-        if (c->bleeding[i]) {
-            c->volts[i] -= c->volts[i] * drop;
+    double seconds = c->bleed_s[module - 1];
+    double percent = 100.0 / (c->config.capacity_ah * 3600.0) / c->config.bleed_ohm * seconds;
+    uint32_t on = c->bleed_mask[module - 1];
+    for (int i = c->first_cell[module - 1]; seconds > 0.0 && on != 0u; i++, on >>= 1) {
+        if ((on & 1u) != 0u) {
+            c->soc[i] -= c->volts[i] * percent;
+        }
+    }
+    c->bleed_s[module - 1] = 0.0;
+    c->bleed_mask[module - 1] = mask;
+}
+
+/* The bleed current through the cell's own resistance. */
+static void bleed_drop(sim_cells *c, int module)
+{
+    double left = 1.0 - c->config.resistance_ohm / c->config.bleed_ohm;
+    uint32_t on = c->bleed_mask[module - 1];
+    for (int i = c->first_cell[module - 1]; on != 0u; i++, on >>= 1) {
+        if ((on & 1u) != 0u) {
+            c->volts[i] *= left;
         }
     }
 }
@@ -148,33 +163,27 @@ void sim_cells_step(sim_cells *c, double dt_s, double from_a, double to_a)
     double rise = to_a * c->config.resistance_ohm;
     const sim_ocv *ocv = c->config.ocv;
     c->current_a = to_a;
+    for (int m = 1; m <= c->config.modules; m++) {
+        if (c->bleed_mask[m - 1] != 0u) {
+            sim_cells_take_bleed(c, m, c->bleed_mask[m - 1]);
+        }
+    }
     heat(c, dt_s, (from_a * from_a + from_a * to_a + to_a * to_a) / 3.0);
     for (int i = 0; i < c->cells; i++) {
         c->soc[i] += charge;
         double v = sim_ocv_volts(ocv, c->soc[i], &c->segment[i]) + rise;
         c->volts[i] = v < 0.0 ? 0.0 : v > SIM_OCV_V_MAX ? SIM_OCV_V_MAX : v;
     }
-    if (c->any_bleed) {
-        take_bleed(c, percent_per_as);
+    for (int m = 1; m <= c->config.modules; m++) {
+        if (c->bleed_mask[m - 1] != 0u) {
+            bleed_drop(c, m);
+        }
     }
     if (c->any_forced) {
         for (int i = 0; i < c->cells; i++) {
             if (c->forced[i] >= 0.0) {
                 c->volts[i] = c->forced[i];
             }
-        }
-    }
-}
-
-void sim_cells_bleed(sim_cells *c, int module, int first_cell, uint32_t mask, double dt_s)
-{
-    int n = c->config.cells_in_module[module - 1];
-    for (int i = 0; i < n; i++) {
-        bool on = ((mask >> i) & 1u) != 0u;
-        c->bleeding[first_cell - 1 + i] = on;
-        if (on) {
-            c->bleed_s[first_cell - 1 + i] += dt_s;
-            c->any_bleed = true;
         }
     }
 }

@@ -45,18 +45,19 @@ typedef struct sim_cells_config {
 typedef struct sim_cells {
     sim_cells_config config;
     int cells;
+    int first_cell[SIM_CELLS_MODULES]; /**< index of the lowest cell of a module */
     double soc[SIM_CELLS_MAX];
     double volts[SIM_CELLS_MAX];    /**< at the terminals, as of the last step */
     double forced[SIM_CELLS_MAX];   /**< < 0 = not forced */
-    double bleed_s[SIM_CELLS_MAX];  /**< time with the bleed on since the last step */
-    bool bleeding[SIM_CELLS_MAX];   /**< on at the last observation */
+    uint32_t bleed_mask[SIM_CELLS_MODULES]; /**< outputs at the last observation */
+    double bleed_s[SIM_CELLS_MODULES];      /**< time they have been so, not yet taken from the charge */
     int segment[SIM_CELLS_MAX];
     double t_module[SIM_CELLS_MODULES];
     double heat_j[SIM_CELLS_MODULES];
     double forced_t[SIM_CELLS_MODULES * SIM_CELLS_SENSORS]; /**< above SIM_CELLS_T_MAX = not forced */
     double heat_s;                  /**< time since the temperatures moved */
     double current_a;               /**< through the string, as of the last step */
-    bool any_bleed, any_forced, temps_moved;
+    bool any_forced, temps_moved;
     double ratio[SIM_CELLS_T_MAX - SIM_CELLS_T_MIN + 1];
 } sim_cells;
 
@@ -69,8 +70,20 @@ int sim_cells_init(sim_cells *c, const sim_cells_config *config);
  */
 void sim_cells_step(sim_cells *c, double dt_s, double from_a, double to_a);
 
+/** Takes what was bled from the charge of a module's cells; from now on the outputs are `mask`. */
+void sim_cells_take_bleed(sim_cells *c, int module, uint32_t mask);
+
 /** Observes the balancing outputs: in the `dt_s` seconds just passed those of `module` were `mask` (bit n-1 = its cell n). */
-void sim_cells_bleed(sim_cells *c, int module, int first_cell, uint32_t mask, double dt_s);
+static inline void sim_cells_bleed(sim_cells *c, int module, uint32_t mask, double dt_s)
+{
+    mask &= (1u << (unsigned)c->config.cells_in_module[module - 1]) - 1u;
+    if (mask != c->bleed_mask[module - 1]) {
+        sim_cells_take_bleed(c, module, mask);
+    }
+    if (mask != 0u) {
+        c->bleed_s[module - 1] += dt_s;
+    }
+}
 
 /** Forces a cell's terminal voltage (0..SIM_OCV_V_MAX) until sim_cells_free(). Takes effect at once. 0, or -1 when refused. */
 int sim_cells_force(sim_cells *c, int cell, double volts);

@@ -30,12 +30,7 @@ void sim_cells_pl_feed(sim_cells *c, sim_pl *s)
 
 void sim_cells_pl_observe(sim_cells *c, const sim_pl *s, double dt_s)
 {
-    int first = 1;
     for (int m = 1; m <= c->config.modules; m++) {
-        uint32_t mask = sim_pl_cb(s, m);
-        if (mask != 0u || c->any_bleed) {
-            sim_cells_bleed(c, m, first, mask, dt_s);
-        }
-        first += c->config.cells_in_module[m - 1];
+        sim_cells_bleed(c, m, sim_pl_cb(s, m), dt_s);
     }
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define WORLD_STEP (100 * PS_MS)
-#define OBSERVE_STEP (1 * PS_MS)
+#define OBSERVE_STEP (4 * PS_MS) /* resolution of balancing times while the bus is busy */
 #define POISON 0xa5
 #define FUNCTION_CONFIG 0x40
 #define FAST_CONVERSIONS 0x50 /* ADCT = 01b: 6 us */

@@ -131,7 +131,7 @@ static void test_bleed_takes_charge_only_while_on(void)
     TEST_ASSERT_EQUAL(0, sim_cells_init(&cells, &k));
     /* 3.5 V / 30 Ohm for half of an hour = 0.0583 Ah = 0.583 % */
     for (int i = 0; i < 36000; i++) {
-        sim_cells_bleed(&cells, 1, 1, i % 2 != 0 ? 0x02u : 0u, 0.1);
+        sim_cells_bleed(&cells, 1, i % 2 != 0 ? 0x02u : 0u, 0.1);
         sim_cells_step(&cells, 0.1, 0.0, 0.0);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0, cells.soc[0]);
