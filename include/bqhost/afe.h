@@ -43,7 +43,8 @@ typedef struct bq_afe_ops {
      *  `wait_us` may be NULL. Each call does a bounded amount of work (at most one bus transfer started). */
     bq_status (*poll)(void *ctx, uint32_t *wait_us);
     /** Copies the present picture. Ages are computed at the time of the call. Current fields are filled only by families
-     *  that measure current. BQ_OK; BQ_E_ARG if a capacity is too small (nothing written); BQ_E_STALE before the first update. */
+     *  that measure current. BQ_OK; BQ_E_ARG if a capacity is too small (nothing written); BQ_E_STALE before the first update;
+     *  BQ_E_BUSY while a scan is exchanging the picture (nothing written: never half new). */
     bq_status (*sample)(void *ctx, bq_sample *sample);
     /** Begins to carry out an action: balancing outputs, FETs of families that have them, fault clearing, verified by read-back.
      *  BQ_OK, BQ_E_BUSY, BQ_E_STATE. */
