@@ -46,9 +46,15 @@ static void device_init(sim_pl *s, sim_pl_dev *d)
     sim_pl_reset_leave(s, d);
 }
 
+static bool usable(const sim_pl_options *o)
+{
+    return o == NULL || (o->delay_percent >= -12.0 && o->delay_percent <= 10.0 && o->noise_uv_rms >= 0.0 &&
+                         o->cell_offset_uv_max >= 0.0 && o->wire_drift >= 0.0 && o->wire_drift <= 1.0 && o->reg50_v >= 0.0);
+}
+
 int sim_pl_init(sim_pl *s, int devices, const sim_pl_options *options)
 {
-    if (devices < 1 || devices > SIM_PL_MAX_DEVICES) {
+    if (devices < 1 || devices > SIM_PL_MAX_DEVICES || !usable(options)) {
         return -1;
     }
     memset(s, 0, sizeof *s);
@@ -57,6 +63,7 @@ int sim_pl_init(sim_pl *s, int devices, const sim_pl_options *options)
     }
     s->devices = devices;
     s->spi_hz = 250000;
+    s->spi_mode = 1;
     s->next = SIM_PL_NEVER;
     s->rng = s->options.seed;
     for (int i = 0; i < devices; i++) {
@@ -212,11 +219,16 @@ static void carry_conv(sim_pl *s)
     }
 }
 
+/* Edges that come from power and links are not the host's. */
 void sim_pl_chain_settle(sim_pl *s)
 {
     if (s->chain_changed) {
+        bool exempt = s->exempt;
+
         s->chain_changed = false;
+        s->exempt = true;
         carry_conv(s);
+        s->exempt = exempt;
     }
 }
 

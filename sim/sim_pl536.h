@@ -59,7 +59,8 @@ typedef struct sim_pl_options {
 
 /* ---- life ---------------------------------------------------------------------------------- */
 
-/** Sets up `devices` (1..62) powered devices past power-on reset, EPROM blank, inputs at the bqsim defaults. `options` NULL = ideal. */
+/** Sets up `devices` (1..62) powered devices past power-on reset, EPROM blank, inputs at the bqsim defaults. `options` NULL = ideal.
+ *  Refuses a wrong number of devices and options out of range. */
 int sim_pl_init(sim_pl *s, int devices, const sim_pl_options *options);
 /** Lets `ns` nanoseconds pass; cheap when nothing is due. */
 void sim_pl_advance(sim_pl *s, uint64_t ns);
@@ -80,7 +81,7 @@ void sim_pl_spi(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size
 void sim_pl_spi_bits(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits);
 /** What a packet looks like in time, for sim_pl_spi_timed(). */
 typedef struct sim_pl_spi_timing {
-    uint32_t clock_hz;
+    uint32_t clock_hz;       /**< 0 = as before */
     uint32_t duty_percent;   /**< high phase of the clock */
     uint32_t cs_high_ns;     /**< CS_H high before this packet */
     uint32_t cs_lead_ns;     /**< CS_H low to the first clock edge */
@@ -91,6 +92,8 @@ typedef struct sim_pl_spi_timing {
 void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n, const sim_pl_spi_timing *timing);
 /** The clock, for waveforms and (with strict_timing) for the judge, which then also wants 3 us of simulated time between packets. */
 void sim_pl_set_spi_clock(sim_pl *s, uint32_t hz);
+/** The mode (0..3) the host uses; only judged, with strict_timing (PL-SPI-01). Initially 1. */
+void sim_pl_set_spi_mode(sim_pl *s, int mode);
 /** CONV_H. */
 void sim_pl_set_conv(sim_pl *s, bool level);
 bool sim_pl_conv(const sim_pl *s);

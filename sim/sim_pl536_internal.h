@@ -163,6 +163,7 @@ void sim_pl_protect_config(sim_pl *s, sim_pl_dev *d);
 void sim_pl_protect_check(sim_pl *s, sim_pl_dev *d);
 bool sim_pl_protect_cells_changed(const sim_pl_dev *d);
 void sim_pl_protect_off(sim_pl_dev *d);
+void sim_pl_protect_rest(sim_pl_dev *d);
 void sim_pl_protect_due(sim_pl *s, sim_pl_dev *d);
 void sim_pl_write_alert(sim_pl *s, sim_pl_dev *d, uint8_t value);
 void sim_pl_write_fault(sim_pl *s, sim_pl_dev *d, uint8_t value);

@@ -41,8 +41,19 @@ static void note_key(sim_pl *s, const uint8_t *tx, size_t bits)
     }
 }
 
+/* Addresses given before a RESET of the whole stack are stale, wherever that RESET got to. */
+static void note_reset(sim_pl *s, const uint8_t *tx, size_t bits)
+{
+    if (bits >= 24 && tx[0] >> 1 == ADDR_BROADCAST && tx[1] == REG_RESET && tx[2] == 0xa5) {
+        s->generation++;
+    }
+}
+
 static void judge_strict(sim_pl *s)
 {
+    if (s->spi_mode != 1) {
+        sim_misuse_add(&s->misuse, s->now, 0, "PL-SPI-01", "SPI mode other than 1");
+    }
     if (s->spi_hz < 10000 || s->spi_hz > 1000000) {
         sim_misuse_add(&s->misuse, s->now, 0, "PL-TIM-01", "SPI clock outside 10 kHz..1 MHz");
     }
@@ -65,6 +76,7 @@ void sim_pl_judge_host(sim_pl *s, const uint8_t *tx, size_t bits)
     }
     if ((tx[0] & 1) != 0 && bits >= 16) {
         note_key(s, tx, bits);
+        note_reset(s, tx, bits);
     }
 }
 
@@ -91,7 +103,7 @@ void sim_pl_judge_timing(sim_pl *s, const sim_pl_spi_timing *t)
 
 void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t length, size_t bits)
 {
-    size_t wanted = 8u * (3u + length + ((d->reg[REG_IO_CONFIG] & IOC_CRC_DIS) == 0 ? 1u : 0u));
+    size_t shortest = 8u * (3u + length + ((d->reg[REG_IO_CONFIG] & IOC_CRC_DIS) == 0 ? 1u : 0u));
 
     if (length == 0) {
         sim_pl_judge(s, d, "PL-PKT-12", "read of length 0");
@@ -99,7 +111,7 @@ void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t le
     if (first + (unsigned)length > REG_LAST + 1u) {
         sim_pl_judge(s, d, "PL-PKT-14", "read past 0x4b");
     }
-    if (bits != wanted) {
+    if (bits != shortest && bits != 8u * (4u + length)) {
         sim_pl_judge(s, d, "PL-PKT-04", "read packet of wrong length");
     }
     if (d->conv_end != SIM_PL_NEVER && first <= REG_TEMP2 + 1 && first + (unsigned)length > REG_GPAI) {
@@ -223,6 +235,10 @@ void sim_pl_judge_write(sim_pl *s, const sim_pl_dev *d, uint8_t reg, uint8_t val
     } else if (reg == REG_ADDRESS) {
         judge_address(s, d, value, broadcast);
     } else {
+        if (reg == REG_ADC_CONVERT && (value & 1u) != 0 && !broadcast && (d->uvlo || d->tsd)) {
+            /* a broadcast may be meant for the others */
+            sim_pl_judge_state(s, d, "PL-AMB-70", "conversion started in UVLO or TSD");
+        }
         judge_group2(s, d, reg, value);
         judge_command(s, d, reg, value);
     }

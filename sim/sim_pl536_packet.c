@@ -175,7 +175,10 @@ static void write_to(sim_pl *s, sim_pl_dev *d, const packet *p, bool broadcast)
     }
     sim_pl_eprom_access(s, d);
     if (p->bits != wanted) {
-        sim_pl_judge(s, d, "PL-PKT-03", "write packet of wrong length");
+        /* a good packet with CRC may be looking for a device that has its CRC on (PL-SEQ-02-11) */
+        if (with_crc || p->bits != 32 || sim_pl_crc8(0, p->tx, 3) != p->tx[3]) {
+            sim_pl_judge(s, d, "PL-PKT-03", "write packet of wrong length");
+        }
         if (with_crc) {
             crc_error(s, d);
         }
@@ -200,9 +203,6 @@ static void carry_write(sim_pl *s, const packet *p)
         }
     } else if (s->by_address[address] != 0) {
         write_to(s, &s->dev[s->by_address[address] - 1], p, false);
-    }
-    if (address == ADDR_BROADCAST && p->bytes >= 3 && p->tx[1] == REG_RESET && p->tx[2] == 0xa5) {
-        s->generation++;
     }
     sim_pl_chain_settle(s);
 }
@@ -241,6 +241,7 @@ static void carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, si
     } else {
         sim_pl_faulty_packet(s, tx, rx, driven, bits);
     }
+    s->exempt = false;
     s->last_packet = s->now;
     s->spi_seen = true;
     if (s->vcd != NULL) {
@@ -272,4 +273,9 @@ void sim_pl_set_spi_clock(sim_pl *s, uint32_t hz)
     if (hz != 0) {
         s->spi_hz = hz;
     }
+}
+
+void sim_pl_set_spi_mode(sim_pl *s, int mode)
+{
+    s->spi_mode = mode;
 }

@@ -169,7 +169,7 @@ static void rest(sim_pl *s, sim_pl_dev *d)
 {
     d->asleep = true;
     d->blank_end = SIM_PL_NEVER;
-    sim_pl_protect_off(d);
+    sim_pl_protect_rest(d);
     if (s->options.amb86_sleep_stops_cb) {
         sim_pl_balance_stop(s, d);
     }

@@ -139,12 +139,13 @@ bool sim_pl_protect_cells_changed(const sim_pl_dev *d)
 static void publish(const sim_pl *s, sim_pl_dev *d, unsigned set)
 {
     bool sticky = s->options.amb40_sticky_cells;
+    bool live = watching(d);
     unsigned fault = d->reg[REG_FAULT] | set;
 
-    if (!sticky || d->cov.delay_ns == 0) {
+    if (d->cov.delay_ns == 0 ? live : !sticky) {
         fault = (fault & ~(unsigned)FA_COV) | (d->cov.latched != 0 ? FA_COV : 0u);
     }
-    if (!sticky || d->cuv.delay_ns == 0) {
+    if (d->cuv.delay_ns == 0 ? live : !sticky) {
         fault = (fault & ~(unsigned)FA_CUV) | (d->cuv.latched != 0 ? FA_CUV : 0u);
     }
     d->reg[REG_FAULT] = (uint8_t)fault;
@@ -187,6 +188,19 @@ void sim_pl_protect_off(sim_pl_dev *d)
     guard_stop(&d->cuv, 0x3f);
     guard_stop(&d->ot, 0x3f);
     d->cov.active = d->cuv.active = d->ot.active = 0;
+}
+
+/* SLEEP keeps FAULT_STATUS and ALERT_STATUS (PL-SLEEP-02), but COV_FAULT and CUV_FAULT without a latch show comparators that
+ * are off. */
+void sim_pl_protect_rest(sim_pl_dev *d)
+{
+    sim_pl_protect_off(d);
+    if (d->cov.delay_ns == 0) {
+        d->cov.latched = d->reg[REG_COV_FAULT] = 0;
+    }
+    if (d->cuv.delay_ns == 0) {
+        d->cuv.latched = d->reg[REG_CUV_FAULT] = 0;
+    }
 }
 
 /* ---- configuration -------------------------------------------------------------------------------------------- */

@@ -26,6 +26,7 @@ static void cells_changed(sim_pl *s, sim_pl_dev *d)
                           sim_pl_brick(d) < 5.31)) {
         sim_pl_power_update(s, d);
         sim_pl_chain_settle(s);
+        sim_pl_pins_record(s);
     }
     if (sim_pl_protect_cells_changed(d)) {
         sim_pl_protect_check(s, d);
@@ -38,7 +39,7 @@ int sim_pl_set_cells(sim_pl *s, int device, const double volts[6])
 {
     sim_pl_dev *d = device_at(s, device);
 
-    if (d == NULL) {
+    if (d == NULL || !isfinite(volts[0] + volts[1] + volts[2] + volts[3] + volts[4] + volts[5])) {
         return -1;
     }
     memcpy(d->cell, volts, sizeof d->cell);

@@ -280,6 +280,11 @@ static void test_strict_timing(void)
     sim_misuse_clear(sim_pl_misuse(&s));
     sim_pl_advance(&s, 3 * SIM_PL_US);
     sim_pl_spi(&s, tx, rx, driven, 5);
+    TEST_ASSERT_EQUAL(0, sim_pl_misuse(&s)->count);
+    sim_pl_set_spi_mode(&s, 3);
+    sim_pl_spi_timed(&s, tx, rx, driven, 5, &good);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-SPI-01"));
+    sim_misuse_clear(sim_pl_misuse(&s));
 }
 
 int main(void)
