@@ -55,7 +55,7 @@ void bq_soc_init(bq_soc *s);
  * is taken from
  * the table (linear between points, held at its ends). While valid, charge is added by the trapezoid of the
  * last two currents and
- * kept within 0..capacity. Never blocks, never fails.
+ * kept within 0..capacity; a step of more than a day counts as unknown. Never blocks, never fails.
  */
 void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma, uint16_t
 cell_mv);

@@ -111,7 +111,7 @@ static bq_pack_hold reason(const bq_pack *p, bq_pack_fault f, const bq_pack_inpu
     return BQ_HOLD_TIME;
 }
 
-/* The cause is gone: an active fault clears after recover_ms without any reason to hold it, with a new picture. */
+/* The cause is gone: an active fault clears after recover_ms without a reason to hold, by a new picture. */
 static void gone(bq_pack *p, bq_pack_fault f, const bq_picture *v, const bq_pack_input *in, bool clear,
                  uint32_t now_ms, uint32_t dt_ms)
 {

@@ -189,7 +189,7 @@ static uint8_t bad_sensor(const bq_sample *s, uint16_t m)
     return 0;
 }
 
-/* Why a module has been blind for too long: at least one fault is broken, or one that explains it is active. */
+/* Why a module has been blind for too long: a fault is broken, or one that explains it is active. */
 static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_condition *c)
 {
     const uint64_t bit = (uint64_t)1 << m;

@@ -179,16 +179,17 @@ static void look_at_sensors(bq_pack *p, bq_picture *v, bq_pack_summary *y)
     }
 }
 
-/* A module whose every reading is valid is as blind as its readings are old. Complete = that and fresh everywhere. */
-static void update_blindness(bq_pack *p, const bq_picture *v, bq_pack_summary *y)
+/* A module with only valid readings is as blind as they are old. Complete = that, and fresh, everywhere. */
+static void update_blindness(bq_pack *p, const bq_picture *v, const bq_pack_input *in, bq_pack_summary *y)
 {
     const uint64_t bad = v->silent | v->no_cell | v->no_temp;
 
     y->complete = v->s != NULL && (bad | v->old) == 0u;
+    p->started = p->started || (y->complete && in->monitor == BQ_MONITOR_UP);
     for (uint16_t m = 0; m < p->config.modules; m++) {
         if (v->s != NULL && v->live && (bad & BIT(m)) == 0u) {
             const uint32_t age = module_age(p, v->s, m);
-            /* until the first complete picture the time since the monitor is up counts, nothing from before */
+            /* until the first complete picture the time since the monitor is up counts */
             p->blind_ms[m] = p->started || age < p->blind_ms[m] ? age : p->blind_ms[m];
         }
         if (p->blind_ms[m] > y->blind_ms) {
@@ -213,7 +214,6 @@ void bq_pack_look(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint3
         v->current_known = s->current_valid &&
                            bq_pack_add_ms(s->current_age_ms, p->copy_age_ms) <= p->config.comm_timeout_ms;
     }
-    update_blindness(p, v, &y);
-    p->started = p->started || (y.complete && in->monitor == BQ_MONITOR_UP);
+    update_blindness(p, v, in, &y);
     p->summary = y;
 }

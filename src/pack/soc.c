@@ -5,6 +5,8 @@
 #include <string.h>
 
 #define MA_MS_PER_MAH 3600000
+/* Two currents further apart say nothing about the time between; it also keeps the product within int64. */
+#define LONGEST_MS 86400000u
 
 bool bq_soc_config_ok(const bq_soc_config *c)
 {
@@ -76,7 +78,7 @@ static int64_t charge_at(const bq_soc_config *c, uint16_t mv)
 
 static void count(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma)
 {
-    if (known && s->last_known) {
+    if (known && s->last_known && dt_ms <= LONGEST_MS) {
         const int64_t mean_twice = (int64_t)s->last_ma + current_ma;
         s->charge_ma_ms = limited(s->charge_ma_ms + mean_twice * (int64_t)dt_ms / 2, c);
     } else {
