@@ -98,7 +98,10 @@ static void timed(const sim_pl_spi_timing *t)
     TEST_ASSERT_EQUAL(1, driven[3]);
 }
 
-static const sim_pl_spi_timing nominal = {250000, 50, 3000, 2000, 2000, 0};
+#define TIMING(hz, duty, high, lead, lag, pause)                                                                       \
+    {.clock_hz = (hz), .duty_percent = (duty), .cs_high_ns = (high), .cs_lead_ns = (lead), .cs_lag_ns = (lag), .longest_pause_ns = (pause)}
+
+static const sim_pl_spi_timing nominal = TIMING(250000, 50, 3000, 2000, 2000, 0);
 
 /* proves: PL-SPI-12, PL-AMB-20 */
 static void test_strict_timing_reports_each_violation(void)
@@ -108,14 +111,22 @@ static void test_strict_timing_reports_each_violation(void)
         sim_pl_spi_timing timing;
         bool legal;
     } table[] = {
-        {{250000, 50, 3000, 2000, 2000, 0}, true},    {{10000, 50, 3000, 2000, 2000, 0}, true},
-        {{9999, 50, 3000, 2000, 2000, 0}, false},     {{1000000, 50, 3000, 2000, 2000, 0}, true},
-        {{1000001, 50, 3000, 2000, 2000, 0}, false},  {{250000, 40, 3000, 2000, 2000, 0}, true},
-        {{250000, 39, 3000, 2000, 2000, 0}, false},   {{250000, 60, 3000, 2000, 2000, 0}, true},
-        {{250000, 61, 3000, 2000, 2000, 0}, false},   {{250000, 50, 2999, 2000, 2000, 0}, false},
-        {{250000, 50, 3000, 50, 2000, 0}, true},      {{250000, 50, 3000, 49, 2000, 0}, false},
-        {{250000, 50, 3000, 2000, 10, 0}, true},      {{250000, 50, 3000, 2000, 9, 0}, false},
-        {{250000, 50, 3000, 2000, 2000, 100000}, true}, {{250000, 50, 3000, 2000, 2000, 100001}, false},
+        {TIMING(250000, 50, 3000, 2000, 2000, 0), true},
+        {TIMING(10000, 50, 3000, 2000, 2000, 0), true},
+        {TIMING(9999, 50, 3000, 2000, 2000, 0), false},
+        {TIMING(1000000, 50, 3000, 2000, 2000, 0), true},
+        {TIMING(1000001, 50, 3000, 2000, 2000, 0), false},
+        {TIMING(250000, 40, 3000, 2000, 2000, 0), true},
+        {TIMING(250000, 39, 3000, 2000, 2000, 0), false},
+        {TIMING(250000, 60, 3000, 2000, 2000, 0), true},
+        {TIMING(250000, 61, 3000, 2000, 2000, 0), false},
+        {TIMING(250000, 50, 2999, 2000, 2000, 0), false},
+        {TIMING(250000, 50, 3000, 50, 2000, 0), true},
+        {TIMING(250000, 50, 3000, 49, 2000, 0), false},
+        {TIMING(250000, 50, 3000, 2000, 10, 0), true},
+        {TIMING(250000, 50, 3000, 2000, 9, 0), false},
+        {TIMING(250000, 50, 3000, 2000, 2000, 100000), true},
+        {TIMING(250000, 50, 3000, 2000, 2000, 100001), false},
     };
 
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
@@ -140,17 +151,34 @@ static void test_strict_timing_reports_each_violation(void)
 /* proves: PL-SPI-12 */
 static void test_only_the_strict_mode_judges_timing(void)
 {
-    static const sim_pl_spi_timing bad = {1, 1, 0, 0, 0, 1000000000};
+    static const sim_pl_spi_timing bad = TIMING(1, 1, 0, 0, 0, 1000000000);
 
     bench_address(1);
     timed(&bad);
     expect_no_misuse();
 }
 
+/* proves: PL-SPI-01 */
+static void test_strict_mode_reports_another_spi_mode(void)
+{
+    static const sim_pl_options strict = {.strict_timing = true};
+
+    for (int mode = 0; mode <= 3; mode++) {
+        bench_stack_with(1, &strict);
+        bench_address(1);
+        sim_pl_advance(bench_pl(), 10 * SIM_PL_US);
+        sim_misuse_clear(sim_pl_misuse(bench_pl()));
+        sim_pl_set_spi_mode(bench_pl(), mode);
+        timed(&nominal);
+        TEST_ASSERT_EQUAL(mode != 1, bench_misuses() != 0);
+    }
+    expect_misuse("PL-SPI-01", -1);
+}
+
 /* proves: PL-AMB-20 */
 static void test_pauses_do_not_end_a_packet(void)
 {
-    static const sim_pl_spi_timing slow = {10000, 50, 3000, 2000, 2000, 4000000000u};
+    static const sim_pl_spi_timing slow = TIMING(10000, 50, 3000, 2000, 2000, 4000000000u);
 
     bench_address(1);
     timed(&slow);
@@ -166,6 +194,7 @@ int main(void)
     RUN_TEST(test_the_other_idle_level);
     RUN_TEST(test_strict_timing_reports_each_violation);
     RUN_TEST(test_only_the_strict_mode_judges_timing);
+    RUN_TEST(test_strict_mode_reports_another_spi_mode);
     RUN_TEST(test_pauses_do_not_end_a_packet);
     return UNITY_END();
 }

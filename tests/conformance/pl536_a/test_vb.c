@@ -42,7 +42,7 @@ static void test_an_unaddressed_device_blocks_select_to_the_north(void)
     TEST_ASSERT_EQUAL_HEX8(0x02, bench_read(3, 0x30));
 }
 
-/* proves: PL-VB-04 */
+/* proves: PL-VB-04, PL-AMB-23 */
 static void test_read_data_passes_down_through_every_device(void)
 {
     static const uint8_t tx[5] = {0x0c, 0x3b, 0x01, 0, 0};
@@ -218,6 +218,22 @@ static void test_two_devices_with_one_address(void)
     TEST_ASSERT_EQUAL_HEX8(0x1e, bench_peek(2, 0x33));
 }
 
+/* proves: PL-AMB-21 */
+static void test_the_height_of_a_stack_delays_nothing(void)
+{
+    bench_stack(62);
+    sim_pl_set_spi_clock(bench_pl(), 1000000);
+    bench_address(62);
+    TEST_ASSERT_EQUAL_HEX8(0xbe, bench_read(62, 0x3b));
+    bench_write(62, 0x21, 0x10);
+    bench_write(ALL, 0x34, 0x01);
+    TEST_ASSERT_EQUAL_UINT64(0, sim_pl_now(bench_pl()));
+    expect("get pin.fault", "ok 1");
+    expect("get pin.drdy", "ok 0");
+    bench_advance_us(506);
+    expect("get pin.drdy", "ok 1");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -229,5 +245,6 @@ int main(void)
     RUN_TEST(test_a_device_without_power_passes_nothing);
     RUN_TEST(test_the_conv_level_is_repeated_up_the_whole_stack);
     RUN_TEST(test_two_devices_with_one_address);
+    RUN_TEST(test_the_height_of_a_stack_delays_nothing);
     return UNITY_END();
 }
