@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# The two ways of using the library from another project, each configured, built and run from nothing:
-# carried in a folder (add_subdirectory) and installed (find_package).
-# usage: consumers.sh vendored|installed ROOT SCRATCH VERSION CMAKE GENERATOR CC
+# The ways of using the library from another project, each configured, built and run from nothing:
+# carried in a folder (add_subdirectory), installed (find_package), and compiled without CMake.
+# usage: consumers.sh vendored|installed|plain ROOT SCRATCH VERSION CMAKE GENERATOR CC
 set -eu
 way=$1 root=$2 scratch=$3 version=$4 cmake=$5 generator=$6
 CC=$7
@@ -57,6 +57,18 @@ installed)
         echo "FAILED: version 99 was found"
         exit 1
     fi
+    ;;
+plain)
+    for std in c99 c11 c17; do
+        # shellcheck disable=SC2046
+        "$CC" "-std=$std" -pedantic-errors -O1 -DBQHOST_CRC8=table16 -I "$root/include" "$here/consumer.c" \
+            $(find "$root/src" "$root/drivers" -name '*.c') -o "$scratch/plain-$std"
+        says "$scratch/plain-$std"
+    done
+    ;;
+*)
+    echo "unknown way: $way" >&2
+    exit 2
     ;;
 esac
 rm -rf "$scratch"
