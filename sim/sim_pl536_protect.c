@@ -56,7 +56,7 @@ static bool guard_due(const sim_pl *s, sim_pl_guard *g)
     unsigned ended = 0;
 
     for (int i = 0; i < 6; i++) {
-        if ((g->pending >> i & 1u) != 0 && g->due[i] <= s->now) {
+        if (((unsigned)g->pending >> i & 1u) != 0 && g->due[i] <= s->now) {
             ended |= 1u << i;
         }
     }
@@ -105,7 +105,7 @@ static unsigned over(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 6; i++) {
-        active |= (unsigned)(d->seen[i] > ((d->cov.active >> i & 1u) != 0 ? d->cov.hold : d->cov.trip)) << i;
+        active |= (unsigned)(d->seen[i] > (((unsigned)d->cov.active >> i & 1u) != 0 ? d->cov.hold : d->cov.trip)) << i;
     }
     return active & d->cov.enabled;
 }
@@ -115,7 +115,7 @@ static unsigned under(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 6; i++) {
-        active |= (unsigned)(d->seen[i] < ((d->cuv.active >> i & 1u) != 0 ? d->cuv.hold : d->cuv.trip)) << i;
+        active |= (unsigned)(d->seen[i] < (((unsigned)d->cuv.active >> i & 1u) != 0 ? d->cuv.hold : d->cuv.trip)) << i;
     }
     return active & d->cuv.enabled;
 }
@@ -125,7 +125,7 @@ static unsigned hot(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 2; i++) {
-        active |= (unsigned)(d->ts[i] > ((d->ot.active >> i & 1u) != 0 ? d->ot_hold[i] : d->ot_trip[i])) << i;
+        active |= (unsigned)(d->ts[i] > (((unsigned)d->ot.active >> i & 1u) != 0 ? d->ot_hold[i] : d->ot_trip[i])) << i;
     }
     return active & d->ot.enabled;
 }
@@ -223,9 +223,9 @@ static void ot_config(sim_pl_dev *d)
     unsigned enabled = 0;
 
     for (unsigned i = 0; i < 2; i++) {
-        unsigned code = d->reg[REG_OT] >> (4 * i) & 0x0fu;
+        unsigned code = (unsigned)d->reg[REG_OT] >> (4 * i) & 0x0fu;
 
-        if (code >= 1 && code <= 11 && (d->reg[REG_IO_CONTROL] >> i & 1u) != 0) {
+        if (code >= 1 && code <= 11 && ((unsigned)d->reg[REG_IO_CONTROL] >> i & 1u) != 0) {
             enabled |= 1u << i;
             d->ot_trip[i] = ot_set[code] + SIM_PL_EPS;
             d->ot_hold[i] = ot_clear[code] - SIM_PL_EPS;
@@ -243,7 +243,7 @@ static unsigned limit(unsigned code, unsigned last)
  * cell set to the printed threshold compares equal. */
 void sim_pl_protect_config(sim_pl *s, sim_pl_dev *d)
 {
-    uint8_t cells = (uint8_t)(0x3fu >> (d->reg[REG_FUNCTION] >> 2 & 3u));
+    uint8_t cells = (uint8_t)(0x3fu >> ((unsigned)d->reg[REG_FUNCTION] >> 2 & 3u));
     unsigned cov_mv = 2000 + 50 * limit(d->reg[REG_COV] & 0x3fu, 0x3c);
     unsigned cuv_mv = 700 + 100 * limit(d->reg[REG_CUV] & 0x1fu, 0x1a);
 
