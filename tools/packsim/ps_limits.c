@@ -178,38 +178,65 @@ static bq_status check_driver(const bq76pl536_config *config)
     return bq76pl536_init(&d, config, &spi, NULL, &clock, devices, BQ76PL536_MAX_DEVICES);
 }
 
-static ps_place place_of(ps_scenario *s, ps_ini *ini, const char *key)
+typedef bq_status (*checker)(const ps_scenario *s, const char **field);
+
+static bq_status check_app(const ps_scenario *s, const char **field)
 {
+    return bq_app_config_validate(&s->app, field);
+}
+
+static bq_status check_stack(const ps_scenario *s, const char **field)
+{
+    bq_status status = check_driver(&s->driver);
+    *field = status == BQ_E_COV_CUV ? "cov_mv - cuv_mv" : "the driver's configuration";
+    return status;
+}
+
+/* Which line is to blame: that of the field itself, or the first that is refused when it alone differs from the defaults. */
+static ps_place blame(const ps_scenario *s, ps_ini *ini, const ps_scenario *plain, checker check, const char *field)
+{
+    static ps_scenario one;
     ps_place at = s->pack_at;
-    (void)ps_ini_get(ini, "limits", key, &at);
+    if (ps_ini_get(ini, "limits", field, &at) != NULL) {
+        return at;
+    }
+    for (int i = 0; i < ini->count; i++) {
+        const ps_ini_entry *x = &ini->entry[i];
+        const char *ignored = NULL;
+        ps_error unused = {0};
+        one = *plain;
+        if (strcmp(x->section, "limits") == 0 && apply_key(&one, x->key, x->value, x->at, &unused) == 0 &&
+            check(&one, &ignored) != BQ_OK) {
+            return x->at;
+        }
+    }
     return at;
 }
 
-/* Which field is to blame: the one that is refused already when it alone differs from the defaults. */
-static int blame(ps_scenario *s, ps_ini *ini, const ps_scenario *plain, bq_status status, ps_error *e)
+/* With the key of the line to blame in front, when it is another one than the field. */
+static int refuse(const ps_scenario *s, ps_ini *ini, const ps_scenario *plain, checker check, ps_error *e)
 {
-    if (status == BQ_E_COV_CUV) {
-        bool cuv = false;
-        for (int i = 0; i < ini->count; i++) {
-            cuv = cuv || strcmp(ini->entry[i].key, "cuv_mv") == 0;
-        }
-        return ps_fail(e, place_of(s, ini, cuv ? "cuv_mv" : "cov_mv"),
-                       "cov_mv %u and cuv_mv %u are less than 300 mV apart (%s)", (unsigned)s->driver.cov_mv,
-                       (unsigned)s->driver.cuv_mv, bq_status_name(status));
+    const char *field = NULL, *key = NULL;
+    bq_status status = check(s, &field);
+    if (status == BQ_OK) {
+        return 0;
     }
-    static ps_scenario one;
+    field = field != NULL ? field : "limits";
+    ps_place at = blame(s, ini, plain, check, field);
     for (int i = 0; i < ini->count; i++) {
         const ps_ini_entry *x = &ini->entry[i];
-        int value = 0;
-        if (strcmp(x->section, "limits") != 0 || !ps_int(x->value, &value)) {
-            continue;
-        }
-        one = *plain;
-        if (set_field(&one, x->key, value) == 0 && check_driver(&one.driver) == status) {
-            return ps_fail(e, x->at, "%s: %d is refused by the driver (%s)", x->key, value, bq_status_name(status));
+        if (strcmp(x->section, "limits") == 0 && x->at.file == at.file && x->at.line == at.line) {
+            key = x->key;
         }
     }
-    return ps_fail(e, s->pack_at, "the driver refuses this configuration (%s)", bq_status_name(status));
+    if (status == BQ_E_COV_CUV) {
+        return ps_fail(e, at, "cov_mv %u and cuv_mv %u are less than 300 mV apart (%s)", (unsigned)s->driver.cov_mv,
+                       (unsigned)s->driver.cuv_mv, bq_status_name(status));
+    }
+    if (key == NULL || strcmp(key, field) == 0) {
+        return ps_fail(e, at, "%s is refused (%s)", field, bq_status_name(status));
+    }
+    return ps_fail(e, at, "%s: %s is refused (%s)", key, field, bq_status_name(status));
 }
 
 int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e)
@@ -226,12 +253,5 @@ int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e)
         }
     }
     s->app.balance_timer_s = s->driver.balance_timer_s;
-    const char *field = NULL;
-    bq_status status = bq_app_config_validate(&s->app, &field);
-    if (status != BQ_OK) {
-        return ps_fail(e, place_of(s, ini, field != NULL ? field : ""), "%s: %s",
-                       field != NULL ? field : "limits", bq_status_name(status));
-    }
-    status = check_driver(&s->driver);
-    return status == BQ_OK ? 0 : blame(s, ini, &plain, status, e);
+    return refuse(s, ini, &plain, check_app, e) != 0 ? -1 : refuse(s, ini, &plain, check_stack, e);
 }

@@ -97,7 +97,7 @@ good | sed 's/^no faults/state fault at 10 s/' >failing.ini
 "$packsim" failing.ini --quiet >out 2>err
 status=$?
 [ $status -eq 1 ] || fail "failing expectation: exit status $status"
-grep -q '^failed: failing.ini:20: state fault at 10 s (state on)$' out || fail "failing expectation not named: $(head -1 out)"
+grep -q '^failed: failing.ini:21: state fault at 10 s (state on)$' out || fail "failing expectation not named: $(head -1 out)"
 grep -q '^result: fail$' out || fail "no result: fail"
 
 refused 'unknown key' 's/^capacity.*//; s/^soc_percent/soc_per_cent/' 7 'unknown key soc_per_cent'
