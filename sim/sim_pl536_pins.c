@@ -16,9 +16,12 @@ static bool own_fault(const sim_pl *s, const sim_pl_dev *d)
     return flags != 0 && !d->asleep && !d->tsd;
 }
 
-static bool own_alert(const sim_pl_dev *d)
+static bool own_alert(const sim_pl *s, const sim_pl_dev *d)
 {
-    return (d->asleep || d->tsd ? d->reg[REG_ALERT] & AL_SLEEP : d->reg[REG_ALERT]) != 0;
+    if (d->asleep || d->tsd) {
+        return (d->reg[REG_ALERT] & AL_SLEEP) != 0;
+    }
+    return (d->reg[REG_STATUS] & ST_ALERT) != 0 || (s->options.amb01_crc_alert && (d->reg[REG_FAULT] & FA_CRC) != 0);
 }
 
 /* True while what comes from above device index i gets through it. */
@@ -43,7 +46,7 @@ bool sim_pl_fault_pin(const sim_pl *s)
 bool sim_pl_alert_pin(const sim_pl *s)
 {
     for (int i = 0; i < s->devices && sim_pl_is_on(&s->dev[i]); i++) {
-        if (own_alert(&s->dev[i])) {
+        if (own_alert(s, &s->dev[i])) {
             return true;
         }
         if (!passes(s, i)) {
@@ -81,10 +84,11 @@ void sim_pl_record(sim_pl *s, struct sim_vcd *vcd)
     initial[SIG_DRDY] = sim_pl_drdy_pin(s);
     initial[SIG_FAULT] = sim_pl_fault_pin(s);
     initial[SIG_ALERT] = sim_pl_alert_pin(s);
-    s->vcd_time = s->now;
+    s->vcd_time = s->now > vcd->now ? s->now : vcd->now;
     for (int i = 0; i < 8; i++) {
         s->vcd_signal[i] = sim_vcd_signal(vcd, name[i], initial[i]);
     }
+    sim_pl_pins_record(s); /* another stack may have left other levels in the same file */
 }
 
 static void show(sim_pl *s, int signal, uint64_t at, int level)

@@ -70,6 +70,11 @@ int sim_vcd_signal(sim_vcd *v, const char *name, int initial)
     size_t n = strlen(name);
     int number = v->signals;
 
+    for (int i = 0; i < v->signals; i++) {
+        if (strncmp(v->name[i], name, sizeof v->name[0] - 1) == 0) {
+            return i;
+        }
+    }
     if (number >= SIM_VCD_SIGNALS || v->header_done) {
         return -1;
     }
