@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file bqsim.h
- * The interpreter of bqsim's command language (docs/bqsim.md) without any input or output of its own: one call executes
- * one line and leaves one reply. The program bqsim and the conformance tests are both thin users of it.
+ * The interpreter of bqsim's command language (docs/bqsim.md) without any input or output of its own: one
+ * call executes one line and leaves one reply. The program bqsim and the conformance tests are both thin
+ * users of it.
  */
 #ifndef BQSIM_H
 #define BQSIM_H
@@ -33,27 +34,29 @@ typedef struct bqsim_flips {
 } bqsim_flips;
 
 /**
- * One session: caller-owned, no other state anywhere. Tests may set `options` before the command `stack` and reach the
- * stack's other doors through `stack`; everything else is private to the interpreter.
+ * One session: caller-owned, no other state anywhere. Tests may set `options` before the command `stack` and
+ * reach the stack's other doors through `stack`; everything else is private to the interpreter.
  */
 typedef struct bqsim_session {
-    sim_pl_options options;          /**< readings and imperfections of the next `stack`; all zero = ideal */
+    sim_pl_options options; /**< readings and imperfections of the next `stack`; all zero = ideal */
     bool has_stack;
     sim_pl stack;
-    uint64_t now_ns;                 /**< simulated time since the session began */
-    sim_vcd *vcd;                    /**< NULL = no waveform */
+    uint64_t now_ns; /**< simulated time since the session began */
+    sim_vcd *vcd;    /**< NULL = no waveform */
     bool vbat_is_sum[SIM_PL_MAX_DEVICES + 1];
     bool gpio_level[SIM_PL_MAX_DEVICES + 1];
     bqsim_flips mosi, miso;
     uint8_t tx[BQSIM_PACKET_MAX], rx[BQSIM_PACKET_MAX], driven[BQSIM_PACKET_MAX];
 } bqsim_session;
 
-/** An empty world. `vcd` (may be NULL) is an open waveform file, owned by the caller, that records every bus and pin edge. */
+/** An empty world. `vcd` (may be NULL) is an open waveform file, owned by the caller, that records every bus
+ * and pin edge. */
 void bqsim_init(bqsim_session *s, sim_vcd *vcd);
 
 /**
- * Executes one line (with or without its line end). `reply` receives a single line without line end, always terminated; it is empty for
- * BQSIM_SILENT. A reply that does not fit in `size` refuses the command before it has any effect.
+ * Executes one line (with or without its line end). `reply` receives a single line without line end, always
+ * terminated; it is empty for BQSIM_SILENT. A reply that does not fit in `size` refuses the command before it
+ * has any effect.
  */
 bqsim_result bqsim_exec(bqsim_session *s, const char *line, char *reply, size_t size);
 

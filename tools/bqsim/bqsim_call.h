@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/** @file bqsim_call.h One command being executed, and the chip families' entries in the command tables. Private to bqsim. */
+/** @file bqsim_call.h One command being executed, and the chip families' entries in the command tables.
+ * Private to bqsim. */
 #ifndef BQSIM_CALL_H
 #define BQSIM_CALL_H
 

@@ -57,7 +57,8 @@ bool bqsim_last_count(bqsim_call *c, const char *what, uint32_t low, uint32_t hi
     if (!bqsim_count(word, low, high, value)) {
         char reason[80];
 
-        (void)snprintf(reason, sizeof reason, "%s must be %lu..%lu", what, (unsigned long)low, (unsigned long)high);
+        (void)snprintf(reason, sizeof reason, "%s must be %lu..%lu", what, (unsigned long)low,
+                       (unsigned long)high);
         (void)bqsim_refuse(c, reason, word);
         return false;
     }

@@ -17,8 +17,8 @@ typedef struct program {
     char reply[BQSIM_REPLY_MAX];
 } program;
 
-/* One line without its LF into p->line. Returns its length, which is larger than BQSIM_LINE_MAX when its end was cut off;
- * -1 at the end of the input. */
+/* One line without its LF into p->line. Returns its length, which is larger than BQSIM_LINE_MAX when its end
+ * was cut off; -1 at the end of the input. */
 static long read_line(program *p, FILE *in)
 {
     size_t n = 0;
@@ -120,7 +120,8 @@ int main(int argc, char **argv)
     if (script != NULL && (in = fopen(script, "r")) == NULL) {
         return complain(script, strerror(errno));
     }
-    (void)signal(SIGPIPE, SIG_IGN); /* a reader that went away ends the run with status 1, and the waveform complete */
+    (void)signal(SIGPIPE,
+                 SIG_IGN); /* a reader that went away ends the run with status 1, and the waveform complete */
     p = calloc(1, sizeof *p);
     if (p == NULL) {
         return complain("memory", strerror(errno));

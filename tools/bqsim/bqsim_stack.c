@@ -92,7 +92,8 @@ static void disarm(bqsim_session *s, size_t n)
 static void transfer(bqsim_session *s, size_t n)
 {
     if (s->mosi.count + s->miso.count == 0) {
-        sim_pl_spi(&s->stack, s->tx, s->rx, s->driven, n); /* faults armed through the model's own door stay */
+        sim_pl_spi(&s->stack, s->tx, s->rx, s->driven,
+                   n); /* faults armed through the model's own door stay */
         return;
     }
     arm(s);

@@ -6,13 +6,13 @@
 static const bqsim_text nothing = {NULL, 0};
 
 typedef enum notation {
-    NUMBER,   /* decimal number */
-    VOLTS,    /* the same, printed with at least millivolts */
-    VBAT,     /* VOLTS, or sum */
-    LEVEL,    /* 0 or 1 */
-    SWITCH,   /* on or off */
-    BYTE,     /* two hex digits */
-    MODE      /* name of a mode */
+    NUMBER, /* decimal number */
+    VOLTS,  /* the same, printed with at least millivolts */
+    VBAT,   /* VOLTS, or sum */
+    LEVEL,  /* 0 or 1 */
+    SWITCH, /* on or off */
+    BYTE,   /* two hex digits */
+    MODE    /* name of a mode */
 } notation;
 
 /* A row of dev.D: every value travels as a double. set == NULL: read only. */
@@ -329,7 +329,8 @@ bqsim_result bqsim_stack_set_dev(bqsim_call *c, bqsim_text path)
         return BQSIM_ERR;
     }
     for (int d = first; d <= last; d++) {
-        if (it->set(c->s, d, index, value) != 0) { /* depends on the value alone: the first device refuses or none */
+        if (it->set(c->s, d, index, value) !=
+            0) { /* depends on the value alone: the first device refuses or none */
             return bqsim_refuse(c, "the model refuses this value", word);
         }
     }
@@ -378,7 +379,10 @@ bqsim_result bqsim_stack_get_pin(bqsim_call *c, bqsim_text path)
     static const struct {
         const char *name;
         bool (*get)(const sim_pl *s);
-    } pins[] = {{"conv", sim_pl_conv}, {"fault", sim_pl_fault_pin}, {"alert", sim_pl_alert_pin}, {"drdy", sim_pl_drdy_pin}};
+    } pins[] = {{"conv", sim_pl_conv},
+                {"fault", sim_pl_fault_pin},
+                {"alert", sim_pl_alert_pin},
+                {"drdy", sim_pl_drdy_pin}};
 
     if (!c->s->has_stack) {
         return bqsim_refuse(c, "no stack", nothing);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NUMBER_MAX 63      /* characters of a number */
+#define NUMBER_MAX 63 /* characters of a number */
 #define DECIMALS_MAX 40
 
 static bool is_blank(char c)
@@ -121,7 +121,8 @@ static size_t sign(bqsim_text t, size_t from)
     return from < t.n && (t.p[from] == '+' || t.p[from] == '-') ? 1 : 0;
 }
 
-/* Length of the decimal number at the front of t, 0 if there is none. Letters such as nan, inf and 0x never qualify. */
+/* Length of the decimal number at the front of t, 0 if there is none. Letters such as nan, inf and 0x never
+ * qualify. */
 static size_t number_length(bqsim_text t)
 {
     size_t i = sign(t, 0), whole = digits(t, i), fraction = 0;

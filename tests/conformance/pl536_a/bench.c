@@ -95,7 +95,7 @@ void bench_shadow(int address, int reg, int data)
 void bench_read_block(int address, int reg, int n, uint8_t *data)
 {
     uint8_t tx[300] = {(uint8_t)(address << 1), (uint8_t)reg, (uint8_t)n}, rx[300], driven[300], sum[300];
-    size_t size = (size_t)n;
+    size_t size = (uint8_t)n;
 
     sim_pl_spi(&session.stack, tx, rx, driven, size + 4);
     for (size_t i = 0; i < size + 4; i++) {
@@ -187,7 +187,8 @@ void bench_no_misuse_at(int at)
     const sim_misuse *m = sim_pl_misuse(&session.stack);
     char text[140];
 
-    (void)snprintf(text, sizeof text, "misuse of a correct host: %s device %d %s", m->entry[0].id, m->entry[0].device, m->entry[0].text);
+    (void)snprintf(text, sizeof text, "misuse of a correct host: %s device %d %s", m->entry[0].id,
+                   m->entry[0].device, m->entry[0].text);
     UnityAssertInt(0, (UNITY_INT)m->count, at, text);
 }
 
@@ -211,10 +212,12 @@ void bench_misuse_at(const char *ids, int device, int at)
     char text[200];
 
     for (uint32_t i = 0; i < kept; i++) {
-        found = found || (m->entry[i].id[0] != '\0' && listed(ids, m->entry[i].id) && (device < 0 || m->entry[i].device == device));
+        found = found || (m->entry[i].id[0] != '\0' && listed(ids, m->entry[i].id) &&
+                          (device < 0 || m->entry[i].device == device));
     }
-    (void)snprintf(text, sizeof text, "no %s for device %d; %lu entries, first %s device %d %s", ids, device, (unsigned long)m->count,
-                   kept > 0 ? m->entry[0].id : "-", kept > 0 ? m->entry[0].device : 0, kept > 0 ? m->entry[0].text : "");
+    (void)snprintf(text, sizeof text, "no %s for device %d; %lu entries, first %s device %d %s", ids, device,
+                   (unsigned long)m->count, kept > 0 ? m->entry[0].id : "-",
+                   kept > 0 ? m->entry[0].device : 0, kept > 0 ? m->entry[0].text : "");
     sim_misuse_clear(m);
     UnityAssert(found, at, text, NULL);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file bench.h
- * A bqsim session under test, and packets built the way the requirements describe them. The CRC here is written from PL-CRC-01,
- * bit by bit, independent of the simulator's and of the driver's.
+ * A bqsim session under test, and packets built the way the requirements describe them. The CRC here is
+ * written from PL-CRC-01, bit by bit, independent of the simulator's and of the driver's.
  */
 #ifndef BENCH_H
 #define BENCH_H
@@ -28,7 +28,8 @@ uint8_t bench_crc(const uint8_t *bytes, size_t n);
 
 /** Gives devices 1..n the addresses 1..n, from the base upward. */
 void bench_address(int n);
-/** Addresses 1..n, limits 4.25 V and 2.8 V with 500 ms delay, every flag of the reset cleared: a stack without fault and alert. */
+/** Addresses 1..n, limits 4.25 V and 2.8 V with 500 ms delay, every flag of the reset cleared: a stack
+ * without fault and alert. */
 void bench_quiet(int n);
 
 /** A write packet with its CRC; demands that no byte is driven. */
@@ -55,7 +56,8 @@ uint32_t bench_misuses(void);
 /** Demands an empty book. */
 void bench_no_misuse_at(int at);
 #define expect_no_misuse() bench_no_misuse_at(__LINE__)
-/** Demands that the book holds an entry of one of the IDs (separated by blanks) for this device (-1 = any), then clears it. */
+/** Demands that the book holds an entry of one of the IDs (separated by blanks) for this device (-1 = any),
+ * then clears it. */
 void bench_misuse_at(const char *ids, int device, int at);
 #define expect_misuse(ids, device) bench_misuse_at((ids), (device), __LINE__)
 

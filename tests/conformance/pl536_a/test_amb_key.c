@@ -248,7 +248,8 @@ static void test_writes_to_read_only_and_reserved_registers_are_ignored(void)
     bench_quiet(1);
     bench_convert();
     for (int reg = 0; reg < 256; reg++) {
-        bool readable = reg <= 0x12 || (reg >= 0x22 && reg <= 0x25), listed = (reg >= 0x20 && reg <= 0x25) || (reg >= 0x30 && reg <= 0x34);
+        bool readable = reg <= 0x12 || (reg >= 0x22 && reg <= 0x25),
+             listed = (reg >= 0x20 && reg <= 0x25) || (reg >= 0x30 && reg <= 0x34);
 
         listed = listed || (reg >= 0x3a && reg <= 0x3d) || reg == 0x3f || (reg >= 0x40 && reg <= 0x4b);
         if (!readable && listed) {
@@ -332,7 +333,8 @@ static void test_47_registers_exist_and_no_other_holds_anything(void)
     for (int reg = 0; reg < 256; reg++) {
         int before, keeps;
 
-        if (reg == 0x20 || reg == 0x21 || reg == 0x3b || reg == 0x3c || reg == 0x3d || reg == 0x41 || reg == 0x34) {
+        if (reg == 0x20 || reg == 0x21 || reg == 0x3b || reg == 0x3c || reg == 0x3d || reg == 0x41 ||
+            reg == 0x34) {
             continue; /* seven more that exist: flags, address, reset, test, framing, start */
         }
         before = bench_read(1, reg);

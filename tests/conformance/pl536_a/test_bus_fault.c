@@ -67,13 +67,16 @@ static void test_random_flips_repeat_with_their_seed_and_follow_the_probability(
 
     TEST_ASSERT_EQUAL_UINT64(flips, noisy_run(7, 0.01, b));
     TEST_ASSERT_EQUAL_MEMORY(a, b, sizeof a);
-    TEST_ASSERT_INT_WITHIN(120, 500 * 80 / 100, (int)flips); /* 40 bits in each direction; six standard deviations */
+    TEST_ASSERT_INT_WITHIN(120, 500 * 80 / 100,
+                           (int)flips); /* 40 bits in each direction; six standard deviations */
     (void)noisy_run(8, 0.01, b);
     TEST_ASSERT_TRUE(memcmp(a, b, sizeof a) != 0);
     TEST_ASSERT_EQUAL_UINT64(0, noisy_run(7, 0.0, b));
     clean(1);
     bench_fault()->flip_probability = 1.0;
-    transfer(read_adr_1, 5); /* fd c4 fe: bit 7 of the first byte is set, nobody answers, and the zeros come back inverted */
+    transfer(
+        read_adr_1,
+        5); /* fd c4 fe: bit 7 of the first byte is set, nobody answers, and the zeros come back inverted */
     expect_rx((const uint8_t[]){0xff, 0xff, 0xff, 0xff, 0xff}, 5);
 }
 
@@ -198,7 +201,8 @@ static void test_stuck_lines(void)
     TEST_ASSERT_EQUAL_HEX8(0x81, bench_read(1, 0x3b));
     bench_write(1, 0x3c, 0xa5);
     expect("advance 1ms", "ok");
-    bench_fault()->stuck_mosi = 1; /* now all zeros are a read of length 0 at address 0x00: the CRC of 00 00 00 is 00 */
+    bench_fault()->stuck_mosi =
+        1; /* now all zeros are a read of length 0 at address 0x00: the CRC of 00 00 00 is 00 */
     transfer(read_adr_1, 5);
     TEST_ASSERT_EQUAL(1, driven[3]);
     TEST_ASSERT_EQUAL_HEX8(0x00, rx[3]);
@@ -213,7 +217,8 @@ static void test_the_wrong_device_answers(void)
     bench_fault()->wrong_device = 3;
     transfer(read_adr_1, 5);
     TEST_ASSERT_EQUAL_HEX8(0x83, rx[3]);
-    TEST_ASSERT_EQUAL_HEX8(bench_crc(sum, 4), rx[4]); /* the CRC over the header is right: only the content tells */
+    TEST_ASSERT_EQUAL_HEX8(bench_crc(sum, 4),
+                           rx[4]); /* the CRC over the header is right: only the content tells */
     transfer(adc_7d, 4);
     TEST_ASSERT_EQUAL_HEX8(0x7d, bench_peek(1, 0x30)); /* only answers are wrong */
     TEST_ASSERT_EQUAL_HEX8(0x00, bench_peek(3, 0x30));

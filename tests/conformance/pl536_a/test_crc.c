@@ -46,8 +46,10 @@ static void test_the_read_crc_covers_header_and_data_but_no_filler(void)
 /* proves: PL-CRC-05, PL-AMB-01 */
 static void test_a_bad_write_sets_the_crc_flag_and_the_fault_line(void)
 {
-    static const char *const bad[] = {"spi 05 30 7d 00", "spi 05 30 7d", "spi 05 30", "spi 05", "spi 05 30 7d 4d 00", "spi 7f 30 7d 00"};
-    static const char *const silence[] = {"ok -- -- -- --", "ok -- -- --", "ok -- --", "ok --", "ok -- -- -- -- --", "ok -- -- -- --"};
+    static const char *const bad[] = {"spi 05 30 7d 00", "spi 05 30 7d",       "spi 05 30",
+                                      "spi 05",          "spi 05 30 7d 4d 00", "spi 7f 30 7d 00"};
+    static const char *const silence[] = {"ok -- -- -- --", "ok -- -- --",       "ok -- --",
+                                          "ok --",          "ok -- -- -- -- --", "ok -- -- -- --"};
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         bench_stack(2);

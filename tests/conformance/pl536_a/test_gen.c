@@ -7,8 +7,8 @@
 static void test_every_input_and_output_exists(void)
 {
     uint8_t block[18];
-    static const uint8_t expected[18] = {0x26, 0xf7, 0x1e, 0xb8, 0x21, 0xca, 0x24, 0xdd, 0x25, 0xe3,
-                                         0x2a, 0x7e, 0x2b, 0x01, 0x11, 0x16, 0x19, 0xcd};
+    static const uint8_t expected[18] = {0x26, 0xf7, 0x1e, 0xb8, 0x21, 0xca, 0x24, 0xdd, 0x25,
+                                         0xe3, 0x2a, 0x7e, 0x2b, 0x01, 0x11, 0x16, 0x19, 0xcd};
 
     bench_address(1);
     expect("set dev.1.cell.1 3.0", "ok");
@@ -168,7 +168,8 @@ static void test_only_the_base_talks_to_the_host(void)
     bench_write(3, 0x21, 0x10); /* FORCE in the top device shows on the base's pin */
     expect("get pin.fault", "ok 1");
     TEST_ASSERT_EQUAL_HEX8(0x83, bench_read(3, 0x3b));
-    expect("set dev.1.supply off", "ok"); /* without the base nothing reaches the host, whatever the others do */
+    expect("set dev.1.supply off",
+           "ok"); /* without the base nothing reaches the host, whatever the others do */
     expect("advance 1ms", "ok");
     TEST_ASSERT_TRUE(bench_silent(1));
     TEST_ASSERT_TRUE(bench_silent(2));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The judge's book: each thing that the requirements forbid on the bus is recorded with an ID, and a correct host has none. */
+/* The judge's book: each thing that the requirements forbid on the bus is recorded with an ID, and a correct
+ * host has none. */
 #include "bench.h"
 #include <stdio.h>
 
@@ -50,7 +51,8 @@ static void test_writes_where_nothing_may_be_written(void)
 {
     static const int reserved[] = {0x13, 0x1f, 0x26, 0x2f, 0x35, 0x39, 0x3e, 0x4c, 0x4f, 0x50, 0xff};
     static const int read_only[] = {0x00, 0x01, 0x0e, 0x12, 0x22, 0x23, 0x24, 0x25};
-    static const int undefined_bits[][2] = {{0x21, 0x40}, {0x30, 0x80}, {0x31, 0x08}, {0x31, 0x10}, {0x32, 0x40}, {0x33, 0x40}, {0x34, 0x02}};
+    static const int undefined_bits[][2] = {{0x21, 0x40}, {0x30, 0x80}, {0x31, 0x08}, {0x31, 0x10},
+                                            {0x32, 0x40}, {0x33, 0x40}, {0x34, 0x02}};
 
     clean();
     for (size_t i = 0; i < sizeof reserved / sizeof reserved[0]; i++) {
@@ -153,7 +155,8 @@ static void test_programming_rules(void)
     expect_misuse("PL-OTP-06 PL-AMB-105 PL-TIM-26", 2);
 }
 
-/* A host that does everything right: discovery, set-up, measuring, balancing, flags, sleep, programming, reset. */
+/* A host that does everything right: discovery, set-up, measuring, balancing, flags, sleep, programming,
+ * reset. */
 static void work(int n)
 {
     uint8_t block[19];

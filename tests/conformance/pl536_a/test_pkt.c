@@ -34,7 +34,8 @@ static void test_bit_7_of_the_first_byte_matches_nobody(void)
     bench_quiet(1);
     bench_dump(1, before);
     for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
-        uint8_t write[4] = {(uint8_t)first[i], 0x30, 0x7d, 0}, read[5] = {(uint8_t)first[i], 0x00, 0x01, 0, 0};
+        uint8_t write[4] = {(uint8_t)first[i], 0x30, 0x7d, 0},
+                read[5] = {(uint8_t)first[i], 0x00, 0x01, 0, 0};
 
         write[3] = bench_crc(write, 3);
         TEST_ASSERT_TRUE(bench_send(write, 4));
@@ -86,7 +87,8 @@ static void test_a_read_gives_n_consecutive_registers_and_the_crc(void)
 static void test_six_cells_take_sixteen_bytes(void)
 {
     uint8_t block[12];
-    static const uint8_t expected[12] = {0x1e, 0xb8, 0x21, 0xca, 0x24, 0xdd, 0x25, 0xe3, 0x2a, 0x7e, 0x2b, 0x01};
+    static const uint8_t expected[12] = {0x1e, 0xb8, 0x21, 0xca, 0x24, 0xdd,
+                                         0x25, 0xe3, 0x2a, 0x7e, 0x2b, 0x01};
 
     bench_address(1);
     expect("set dev.1.cell.1 3.0", "ok");
@@ -96,7 +98,8 @@ static void test_six_cells_take_sixteen_bytes(void)
     expect("set dev.1.cell.5 4.15", "ok");
     expect("set dev.1.cell.6 4.2", "ok");
     bench_convert();
-    expect("spi 02 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00", "ok -- -- -- 1e b8 21 ca 24 dd 25 e3 2a 7e 2b 01 2c");
+    expect("spi 02 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00",
+           "ok -- -- -- 1e b8 21 ca 24 dd 25 e3 2a 7e 2b 01 2c");
     bench_read_block(1, 0x03, 12, block);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, block, 12);
 }

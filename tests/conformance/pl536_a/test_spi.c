@@ -27,11 +27,13 @@ static void test_chip_select_resynchronises_every_receiver(void)
 /* proves: PL-SPI-06, PL-CRC-04 */
 static void test_a_write_acts_only_when_chip_select_ends_it(void)
 {
-    static const uint8_t five[5] = {0x03, 0x30, 0x7d, 0x30, 0x00}, reset[4] = {0x03, 0x3c, 0xa5, 0xca}, convert[4] = {0x03, 0x34, 0x01, 0x17};
+    static const uint8_t five[5] = {0x03, 0x30, 0x7d, 0x30, 0x00}, reset[4] = {0x03, 0x3c, 0xa5, 0xca},
+                         convert[4] = {0x03, 0x34, 0x01, 0x17};
     uint8_t rx[5];
 
     bench_quiet(1);
-    sim_pl_spi(bench_pl(), five, rx, NULL, 5); /* complete and right after four bytes, but chip select goes on */
+    sim_pl_spi(bench_pl(), five, rx, NULL,
+               5); /* complete and right after four bytes, but chip select goes on */
     TEST_ASSERT_EQUAL_HEX8(0x00, bench_read(1, 0x30));
     sim_pl_spi(bench_pl(), five, rx, NULL, 4);
     TEST_ASSERT_EQUAL_HEX8(0x7d, bench_read(1, 0x30));
@@ -98,8 +100,11 @@ static void timed(const sim_pl_spi_timing *t)
     TEST_ASSERT_EQUAL(1, driven[3]);
 }
 
-#define TIMING(hz, duty, high, lead, lag, pause)                                                                       \
-    {.clock_hz = (hz), .duty_percent = (duty), .cs_high_ns = (high), .cs_lead_ns = (lead), .cs_lag_ns = (lag), .longest_pause_ns = (pause)}
+#define TIMING(hz, duty, high, lead, lag, pause)                                                             \
+    {                                                                                                        \
+        .clock_hz = (hz), .duty_percent = (duty), .cs_high_ns = (high), .cs_lead_ns = (lead),                \
+        .cs_lag_ns = (lag), .longest_pause_ns = (pause)                                                      \
+    }
 
 static const sim_pl_spi_timing nominal = TIMING(250000, 50, 3000, 2000, 2000, 0);
 

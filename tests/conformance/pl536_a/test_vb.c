@@ -32,7 +32,8 @@ static void test_an_unaddressed_device_blocks_select_to_the_north(void)
     bench_write(0, 0x3b, 3);
     bench_write(ALL, 0x30, 0x02);
     TEST_ASSERT_EQUAL_HEX8(0x02, bench_peek(3, 0x30));
-    bench_write(2, 0x3c, 0xa5); /* device 2 loses its address: device 3 is cut off again, keeping what it has */
+    bench_write(2, 0x3c,
+                0xa5); /* device 2 loses its address: device 3 is cut off again, keeping what it has */
     expect("advance 1ms", "ok");
     bench_write(ALL, 0x30, 0x07);
     TEST_ASSERT_EQUAL_HEX8(0x07, bench_peek(2, 0x30));
@@ -195,7 +196,8 @@ static void test_the_conv_level_is_repeated_up_the_whole_stack(void)
 static void test_two_devices_with_one_address(void)
 {
     static const uint8_t tx[6] = {0x0a, 0x30, 0x02, 0, 0, 0};
-    uint8_t rx[6], driven[6], first[5] = {0x0a, 0x30, 0x02, 0x05, 0x40}, second[5] = {0x0a, 0x30, 0x02, 0x18, 0x80};
+    uint8_t rx[6], driven[6], first[5] = {0x0a, 0x30, 0x02, 0x05, 0x40},
+                              second[5] = {0x0a, 0x30, 0x02, 0x18, 0x80};
 
     bench_stack(2);
     bench_address(2);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The recorded waveform, read back and decoded independently: SPI mode 1, bit order, chip select, host pins. */
+/* The recorded waveform, read back and decoded independently: SPI mode 1, bit order, chip select, host pins.
+ */
 #include "bench.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,7 +93,8 @@ static void read_events(void)
     TEST_ASSERT_TRUE(ns);
 }
 
-/* A listener in mode 1: samples both lines on each falling clock edge while selected, first bit = highest bit. */
+/* A listener in mode 1: samples both lines on each falling clock edge while selected, first bit = highest
+ * bit. */
 static void decode(void)
 {
     int level[SIGNALS];
@@ -124,8 +126,10 @@ static void decode(void)
                 continue;
             }
             p->last_clock = e->time;
-            p->mosi[p->bits / 8] = (uint8_t)(p->mosi[p->bits / 8] | (level[SDI] == 1 ? 0x80 >> p->bits % 8 : 0));
-            p->miso[p->bits / 8] = (uint8_t)(p->miso[p->bits / 8] | (level[SDO] == 1 ? 0x80 >> p->bits % 8 : 0));
+            p->mosi[p->bits / 8] =
+                (uint8_t)(p->mosi[p->bits / 8] | (level[SDI] == 1 ? 0x80 >> p->bits % 8 : 0));
+            p->miso[p->bits / 8] =
+                (uint8_t)(p->miso[p->bits / 8] | (level[SDO] == 1 ? 0x80 >> p->bits % 8 : 0));
             p->bits++;
         }
     }
@@ -192,8 +196,10 @@ static void test_the_waveform_decodes_to_the_bytes_in_mode_1(void)
     TEST_ASSERT_EQUAL(5, packet_count);
     expect_packet(0, (const uint8_t[]){0x01, 0x3b, 0x01, 0x02}, none, 4);
     expect_packet(1, (const uint8_t[]){0x01, 0x3b, 0x02, 0x0b}, none, 4);
-    expect_packet(2, (const uint8_t[]){0x02, 0x3b, 0x01, 0x00, 0x00}, (const uint8_t[]){0, 0, 0, 0x81, 0xba}, 5);
-    expect_packet(3, (const uint8_t[]){0x04, 0x3b, 0x01, 0x00, 0x00}, (const uint8_t[]){0, 0, 0, 0x82, 0xc7}, 5);
+    expect_packet(2, (const uint8_t[]){0x02, 0x3b, 0x01, 0x00, 0x00}, (const uint8_t[]){0, 0, 0, 0x81, 0xba},
+                  5);
+    expect_packet(3, (const uint8_t[]){0x04, 0x3b, 0x01, 0x00, 0x00}, (const uint8_t[]){0, 0, 0, 0x82, 0xc7},
+                  5);
     expect_packet(4, (const uint8_t[]){0x7f, 0x30, 0x3d, 0x6a}, none, 4);
     check_data_edges();
 }
@@ -242,7 +248,8 @@ static void test_the_clock_has_the_chosen_rate(void)
         finish();
         TEST_ASSERT_EQUAL(1, packet_count);
         /* 39 periods and the high half of the last one */
-        TEST_ASSERT_EQUAL_UINT64(39 * (1000000000ull / hz[i]) + 500000000ull / hz[i], packets[0].last_clock - packets[0].first_clock);
+        TEST_ASSERT_EQUAL_UINT64(39 * (1000000000ull / hz[i]) + 500000000ull / hz[i],
+                                 packets[0].last_clock - packets[0].first_clock);
     }
 }
 
@@ -288,7 +295,8 @@ static void test_host_pins_change_at_their_simulated_time(void)
     TEST_ASSERT_EQUAL_UINT64(10 * SIM_PL_MS, change(CONV, 1, 0));
     TEST_ASSERT_EQUAL_UINT64(20 * SIM_PL_MS, change(CONV, 0, 0));
     TEST_ASSERT_EQUAL_UINT64(10 * SIM_PL_MS, change(DRDY, 0, 0));
-    TEST_ASSERT_EQUAL_UINT64(10 * SIM_PL_MS + 506 * SIM_PL_US, change(DRDY, 1, 0)); /* 500 us and (1 + 1) x 3 us */
+    TEST_ASSERT_EQUAL_UINT64(10 * SIM_PL_MS + 506 * SIM_PL_US,
+                             change(DRDY, 1, 0)); /* 500 us and (1 + 1) x 3 us */
     TEST_ASSERT_EQUAL_UINT64(30 * SIM_PL_MS, change(FAULT, 1, 0));
     TEST_ASSERT_EQUAL_UINT64(40 * SIM_PL_MS, change(FAULT, 0, 1));
 }

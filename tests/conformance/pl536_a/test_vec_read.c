@@ -56,8 +56,10 @@ static void test_six_cells(void)
     expect("set dev.2.cell.5 4.15", "ok");
     expect("set dev.2.cell.6 4.2", "ok");
     bench_convert();
-    expect("spi 02 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00", "ok -- -- -- 24 dd 24 dd 24 dd 24 dd 24 dd 24 dd 92");
-    expect("spi 04 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00", "ok -- -- -- 1e b8 21 ca 24 dd 25 e3 2a 7e 2b 01 9b");
+    expect("spi 02 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00",
+           "ok -- -- -- 24 dd 24 dd 24 dd 24 dd 24 dd 24 dd 92");
+    expect("spi 04 03 0c 00 00 00 00 00 00 00 00 00 00 00 00 00",
+           "ok -- -- -- 1e b8 21 ca 24 dd 25 e3 2a 7e 2b 01 9b");
     expect_no_misuse();
 }
 
@@ -86,8 +88,9 @@ static void test_status_with_cov_on_cell_3_and_a_crc_error(void)
 /* proves: PL-VEC-43 */
 static void test_group_3_as_configured(void)
 {
-    static const char *const writes[] = {"spi 7f 40 50 cc", "spi 7f 42 2c 95", "spi 7f 43 85 d6", "spi 7f 44 15 44",
-                                         "spi 7f 45 85 a8", "spi 7f 46 55 a9", "spi 7f 47 64 2b", "spi 03 48 5a cf"};
+    static const char *const writes[] = {"spi 7f 40 50 cc", "spi 7f 42 2c 95", "spi 7f 43 85 d6",
+                                         "spi 7f 44 15 44", "spi 7f 45 85 a8", "spi 7f 46 55 a9",
+                                         "spi 7f 47 64 2b", "spi 03 48 5a cf"};
 
     bench_address(1);
     expect("spi 7f 30 7d ad", "ok -- -- -- --");
@@ -96,7 +99,8 @@ static void test_group_3_as_configured(void)
         expect("spi 7f 3a 35 d0", "ok -- -- -- --");
         expect(writes[i], "ok -- -- -- --");
     }
-    expect("spi 02 40 0c 00 00 00 00 00 00 00 00 00 00 00 00 00", "ok -- -- -- 50 00 2c 85 15 85 55 64 5a 00 00 00 83");
+    expect("spi 02 40 0c 00 00 00 00 00 00 00 00 00 00 00 00 00",
+           "ok -- -- -- 50 00 2c 85 15 85 55 64 5a 00 00 00 83");
     expect_no_misuse();
 }
 
@@ -168,13 +172,15 @@ static void test_the_frame_of_a_real_part(void)
 {
     static const sim_pl_options variant = {.variant_a = true};
     static const uint8_t otp[9] = {0x10, 0x80, 0x31, 0x81, 0x08, 0x81, 0x66, 0xff, 0x15};
-    uint8_t frame[3 + 0x4c] = {0x00, 0x00, 0x4c}, data[0x4c], driven[0x4c + 4], tx[0x4c + 4] = {0x00, 0x00, 0x4c}, rx[0x4c + 4];
+    uint8_t frame[3 + 0x4c] = {0x00, 0x00, 0x4c}, data[0x4c], driven[0x4c + 4],
+                      tx[0x4c + 4] = {0x00, 0x00, 0x4c}, rx[0x4c + 4];
 
     frame[3 + 0x00] = 0x61;
     memcpy(&frame[3 + 0x20], "\x80\x0b\x30\x0f", 4);
     memcpy(&frame[3 + 0x40], otp, sizeof otp);
     TEST_ASSERT_EQUAL_HEX8(0x9b, sim_pl_crc8(0, frame, sizeof frame));
-    /* The same part simulated: EPROM as read, cells 1 to 4 below 1.5 V, cells 5 and 6 above 4.45 V, both for over 100 ms. */
+    /* The same part simulated: EPROM as read, cells 1 to 4 below 1.5 V, cells 5 and 6 above 4.45 V, both for
+     * over 100 ms. */
     bench_stack_with(1, &variant);
     for (uint8_t i = 0; i < sizeof otp; i++) {
         TEST_ASSERT_EQUAL(0, sim_pl_set_otp(bench_pl(), 1, (uint8_t)(0x40 + i), otp[i]));

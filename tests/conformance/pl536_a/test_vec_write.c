@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Section 35, packet vectors: everything the host writes. The bytes are those of the requirements, sent as they stand. */
+/* Section 35, packet vectors: everything the host writes. The bytes are those of the requirements, sent as
+ * they stand. */
 #include "bench.h"
 #include <stdio.h>
 
@@ -90,7 +91,8 @@ static void test_adc_control(void)
     TEST_ASSERT_EQUAL_HEX8(0x3d, bench_read(2, 0x30));
 }
 
-/* The key to everybody, then a register: read back from both devices. Without the key the same packet does nothing. */
+/* The key to everybody, then a register: read back from both devices. Without the key the same packet does
+ * nothing. */
 static void broadcast_pair(const char *packet, int reg, int value)
 {
     bench_stack(2);
@@ -294,8 +296,8 @@ static void test_programming(void)
 static void test_discarded_writes(void)
 {
     static const char *const bad[][2] = {
-        {"spi 03 30 7d 31", WROTE},     {"spi 03 30 7c 30", WROTE}, {"spi 03 30 7d", "ok -- -- --"},
-        {"spi 03 30", "ok -- --"},      {"spi 03", "ok --"},        {"spi 03 30 7d 30 00", "ok -- -- -- -- --"},
+        {"spi 03 30 7d 31", WROTE}, {"spi 03 30 7c 30", WROTE}, {"spi 03 30 7d", "ok -- -- --"},
+        {"spi 03 30", "ok -- --"},  {"spi 03", "ok --"},        {"spi 03 30 7d 30 00", "ok -- -- -- -- --"},
     };
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

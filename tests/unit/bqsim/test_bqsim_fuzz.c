@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Seeded random and mutated lines: every one gets a well-formed reply, and a refused line leaves the whole session as it was. */
+/* Seeded random and mutated lines: every one gets a well-formed reply, and a refused line leaves the whole
+ * session as it was. */
 #include "bqsim.h"
 #include "unity.h"
 #include <stddef.h>
@@ -32,15 +33,62 @@ static uint32_t chance(uint32_t n)
 }
 
 static const char *const seeds[] = {
-    "stack 3", "stack 1", "stack 62", "advance 10ms", "advance 3s", "advance 1.5min", "advance 7us", "set dev.1.cell.3 4.25",
-    "set dev.*.cell.6 2.1", "set dev.2.vbat 21.6", "set dev.2.vbat sum", "set dev.*.ts.1 0.42", "set dev.1.gpai 1.25",
-    "set dev.3.gpio 0", "set dev.1.tdie 143", "set dev.1.tdie 25", "set dev.2.supply off", "set dev.*.supply on", "set dev.1.otp.42 2c",
-    "set dev.1.vpp on", "set dev.1.vpp off", "set pin.conv 1", "set pin.conv 0", "get dev.1.cell.3", "get dev.1.mode", "get dev.2.cb",
-    "get pin.fault", "get pin.drdy", "peek dev.1 21", "peek dev.3 3b", "inject mosi 12", "inject miso 30", "inject sda 4", "i2c S 10 P",
-    "afe bq7694003", "spi 7f 3c a5 57", "spi 01 3b 01 02", "spi 01 3b 02 0b", "spi 01 3b 03 0c", "spi 02 3b 01 00 00", "spi 7f 34 01 8a",
-    "spi 7f 30 7d ad", "spi 7f 3a 35 d0", "spi 7f 40 50 cc", "spi 7f 42 2c 95", "spi 7f 43 85 d6", "spi 7f 3a 27 ae", "spi 03 33 1e 21",
-    "spi 03 32 12 10", "spi 7f 31 04 d0", "spi 7f 31 03 c5", "spi 03 3f 91 79", "spi 7f 41 01 69", "spi 02 03 0c 00 00 00 00 00 00 00 00 00",
-    "# comment", "",
+    "stack 3",
+    "stack 1",
+    "stack 62",
+    "advance 10ms",
+    "advance 3s",
+    "advance 1.5min",
+    "advance 7us",
+    "set dev.1.cell.3 4.25",
+    "set dev.*.cell.6 2.1",
+    "set dev.2.vbat 21.6",
+    "set dev.2.vbat sum",
+    "set dev.*.ts.1 0.42",
+    "set dev.1.gpai 1.25",
+    "set dev.3.gpio 0",
+    "set dev.1.tdie 143",
+    "set dev.1.tdie 25",
+    "set dev.2.supply off",
+    "set dev.*.supply on",
+    "set dev.1.otp.42 2c",
+    "set dev.1.vpp on",
+    "set dev.1.vpp off",
+    "set pin.conv 1",
+    "set pin.conv 0",
+    "get dev.1.cell.3",
+    "get dev.1.mode",
+    "get dev.2.cb",
+    "get pin.fault",
+    "get pin.drdy",
+    "peek dev.1 21",
+    "peek dev.3 3b",
+    "inject mosi 12",
+    "inject miso 30",
+    "inject sda 4",
+    "i2c S 10 P",
+    "afe bq7694003",
+    "spi 7f 3c a5 57",
+    "spi 01 3b 01 02",
+    "spi 01 3b 02 0b",
+    "spi 01 3b 03 0c",
+    "spi 02 3b 01 00 00",
+    "spi 7f 34 01 8a",
+    "spi 7f 30 7d ad",
+    "spi 7f 3a 35 d0",
+    "spi 7f 40 50 cc",
+    "spi 7f 42 2c 95",
+    "spi 7f 43 85 d6",
+    "spi 7f 3a 27 ae",
+    "spi 03 33 1e 21",
+    "spi 03 32 12 10",
+    "spi 7f 31 04 d0",
+    "spi 7f 31 03 c5",
+    "spi 03 3f 91 79",
+    "spi 7f 41 01 69",
+    "spi 02 03 0c 00 00 00 00 00 00 00 00 00",
+    "# comment",
+    "",
 };
 
 static size_t mutate(char *line)
@@ -187,7 +235,8 @@ static void test_small_reply_buffers(void)
     step("stack 2", 7);
     for (int i = 0; i < 2000; i++) {
         size_t size = 1 + chance(40), n = mutate(line);
-        char *exact = malloc(size); /* of exactly this size, so that a write beyond it is seen by the sanitizer */
+        char *exact =
+            malloc(size); /* of exactly this size, so that a write beyond it is seen by the sanitizer */
 
         TEST_ASSERT_NOT_NULL(exact);
         (void)bqsim_exec_n(&session, line, n, exact, size);

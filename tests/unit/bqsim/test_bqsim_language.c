@@ -76,8 +76,20 @@ static void test_everything_needs_a_stack(void)
 
 static void test_stack_takes_one_number_from_1_to_62(void)
 {
-    static const char *const bad[] = {"stack", "stack 0", "stack 63", "stack -1", "stack +1", "stack 1.0", "stack 0x2", "stack a",
-                                      "stack 01", "stack 2 3", "stack 99999999999999999999", "stack 1e1", "Stack 1", "stack,1"};
+    static const char *const bad[] = {"stack",
+                                      "stack 0",
+                                      "stack 63",
+                                      "stack -1",
+                                      "stack +1",
+                                      "stack 1.0",
+                                      "stack 0x2",
+                                      "stack a",
+                                      "stack 01",
+                                      "stack 2 3",
+                                      "stack 99999999999999999999",
+                                      "stack 1e1",
+                                      "Stack 1",
+                                      "stack,1"};
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         refused(bad[i]);
@@ -124,15 +136,32 @@ static void test_defaults(void)
 static void test_what_is_set_reads_back(void)
 {
     static const char *const table[][3] = {
-        {"cell.1", "3.650", "ok 3.650"},   {"cell.2", "4.2", "ok 4.200"},       {"cell.6", "3.123456789", "ok 3.123456789"},
-        {"cell.3", "-0.5", "ok -0.500"},   {"cell.4", "0", "ok 0.000"},         {"cell.5", "-0", "ok 0.000"},
-        {"vbat", "21.6", "ok 21.600"},     {"vbat", "sum", "ok sum"},           {"ts.1", "0.5", "ok 0.5"},
-        {"ts.2", "0.13242", "ok 0.13242"}, {"gpai", "1.25", "ok 1.25"},         {"gpai", "-0.001", "ok -0.001"},
-        {"gpio", "0", "ok 0"},             {"gpio", "1", "ok 1"},               {"tdie", "-40", "ok -40"},
-        {"tdie", "84.5", "ok 84.5"},       {"supply", "off", "ok off"},         {"supply", "on", "ok on"},
-        {"otp.42", "2c", "ok 2c"},         {"otp.4B", "A5", "ok a5"},           {"vpp", "on", "ok on"},
-        {"vpp", "off", "ok off"},          {"gpai", "1.5e-05", "ok 0.000015"},  {"tdie", "+30.", "ok 30"},
-        {"cell.1", ".5", "ok 0.500"},      {"cell.1", "3600e-3", "ok 3.600"},
+        {"cell.1", "3.650", "ok 3.650"},
+        {"cell.2", "4.2", "ok 4.200"},
+        {"cell.6", "3.123456789", "ok 3.123456789"},
+        {"cell.3", "-0.5", "ok -0.500"},
+        {"cell.4", "0", "ok 0.000"},
+        {"cell.5", "-0", "ok 0.000"},
+        {"vbat", "21.6", "ok 21.600"},
+        {"vbat", "sum", "ok sum"},
+        {"ts.1", "0.5", "ok 0.5"},
+        {"ts.2", "0.13242", "ok 0.13242"},
+        {"gpai", "1.25", "ok 1.25"},
+        {"gpai", "-0.001", "ok -0.001"},
+        {"gpio", "0", "ok 0"},
+        {"gpio", "1", "ok 1"},
+        {"tdie", "-40", "ok -40"},
+        {"tdie", "84.5", "ok 84.5"},
+        {"supply", "off", "ok off"},
+        {"supply", "on", "ok on"},
+        {"otp.42", "2c", "ok 2c"},
+        {"otp.4B", "A5", "ok a5"},
+        {"vpp", "on", "ok on"},
+        {"vpp", "off", "ok off"},
+        {"gpai", "1.5e-05", "ok 0.000015"},
+        {"tdie", "+30.", "ok 30"},
+        {"cell.1", ".5", "ok 0.500"},
+        {"cell.1", "3600e-3", "ok 3.600"},
     };
     char line[80];
 
@@ -168,8 +197,10 @@ static void test_star_sets_all_devices_and_only_sets(void)
 
 static void test_values_that_cannot_be_are_refused_and_change_nothing(void)
 {
-    static const char *const number[] = {"nan", "inf", "-inf", "NaN", "INFINITY", "0x3", "3.6V", "3,6", "3.6 x", "", "1e999", "-1e999", "--1",
-                                         "1..2", ".", "+", "e5", "1e", "1e+", "3.6.", "3.6\x01", "\xc3\xa9", "1000000000", "sum", "on"};
+    static const char *const number[] = {
+        "nan", "inf",   "-inf",    "NaN",      "INFINITY",   "0x3", "3.6V", "3,6", "3.6 x",
+        "",    "1e999", "-1e999",  "--1",      "1..2",       ".",   "+",    "e5",  "1e",
+        "1e+", "3.6.",  "3.6\x01", "\xc3\xa9", "1000000000", "sum", "on"};
     char line[80];
 
     expect("stack 2", "ok");
@@ -208,13 +239,27 @@ static void test_values_that_cannot_be_are_refused_and_change_nothing(void)
 static void test_unknown_and_read_only_paths_are_refused(void)
 {
     static const char *const bad[] = {
-        "set dev.1.cell.0 3", "set dev.1.cell.7 3", "set dev.1.cell 3", "set dev.1.cell.1.1 3", "set dev.1.cell. 3", "set dev.1. 3",
-        "set dev.1 3", "set dev. 3", "set dev 3", "set dev.0.cell.1 3", "set dev.3.cell.1 3", "set dev.01.cell.1 3", "set dev.-1.cell.1 3",
-        "set dev.1.cell.01 3", "set dev.1.ts.0 0.1", "set dev.1.ts.3 0.1", "set dev.1.otp.3f 00", "set dev.1.otp.4c 00",
-        "set dev.1.otp.4 00", "set dev.1.otp.64 00", "set dev.1.vbat.1 3", "set dev.1.nothing 3", "set dev.1.cb 00", "set dev.1.mode active",
-        "set pin.fault 0", "set pin.alert 0", "set pin.drdy 0", "set pin. 0", "set pin 0", "set", "set dev.1.cell.1", "set cell.1 3",
-        "set .dev.1.cell.1 3", "get", "get dev.1", "get dev.1.cell.1 x", "get pin.conv x", "get pin.none", "get dev.1.cb.1", "get nothing",
-        "get DEV.1.cb", "get dev.1.otp.40 00",
+        "set dev.1.cell.0 3",  "set dev.1.cell.7 3",
+        "set dev.1.cell 3",    "set dev.1.cell.1.1 3",
+        "set dev.1.cell. 3",   "set dev.1. 3",
+        "set dev.1 3",         "set dev. 3",
+        "set dev 3",           "set dev.0.cell.1 3",
+        "set dev.3.cell.1 3",  "set dev.01.cell.1 3",
+        "set dev.-1.cell.1 3", "set dev.1.cell.01 3",
+        "set dev.1.ts.0 0.1",  "set dev.1.ts.3 0.1",
+        "set dev.1.otp.3f 00", "set dev.1.otp.4c 00",
+        "set dev.1.otp.4 00",  "set dev.1.otp.64 00",
+        "set dev.1.vbat.1 3",  "set dev.1.nothing 3",
+        "set dev.1.cb 00",     "set dev.1.mode active",
+        "set pin.fault 0",     "set pin.alert 0",
+        "set pin.drdy 0",      "set pin. 0",
+        "set pin 0",           "set",
+        "set dev.1.cell.1",    "set cell.1 3",
+        "set .dev.1.cell.1 3", "get",
+        "get dev.1",           "get dev.1.cell.1 x",
+        "get pin.conv x",      "get pin.none",
+        "get dev.1.cb.1",      "get nothing",
+        "get DEV.1.cb",        "get dev.1.otp.40 00",
     };
 
     expect("stack 2", "ok");
@@ -227,11 +272,14 @@ static void test_unknown_and_read_only_paths_are_refused(void)
 
 static void test_times(void)
 {
-    static const char *const good[][2] = {{"1us", "1000"}, {"1ms", "1000000"}, {"1s", "1000000000"}, {"1min", "60000000000"},
-                                          {"1h", "3600000000000"}, {"0us", "0"}, {"0.5us", "500"}, {"1.5ms", "1500000"}, {"1e3us", "1000000"}};
-    static const char *const bad[] = {"advance", "advance 1", "advance us", "advance -1us", "advance 1 us", "advance 1ns", "advance 1d",
-                                      "advance 1S", "advance 1us 1us", "advance nanus", "advance infs", "advance 1e30h", "advance 0x1s",
-                                      "advance 1m", "advance 1mins", "advance 3000000h"};
+    static const char *const good[][2] = {
+        {"1us", "1000"},         {"1ms", "1000000"},      {"1s", "1000000000"},
+        {"1min", "60000000000"}, {"1h", "3600000000000"}, {"0us", "0"},
+        {"0.5us", "500"},        {"1.5ms", "1500000"},    {"1e3us", "1000000"}};
+    static const char *const bad[] = {
+        "advance",      "advance 1",  "advance us",      "advance -1us",    "advance 1 us", "advance 1ns",
+        "advance 1d",   "advance 1S", "advance 1us 1us", "advance nanus",   "advance infs", "advance 1e30h",
+        "advance 0x1s", "advance 1m", "advance 1mins",   "advance 3000000h"};
 
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         char line[40], now[40];
@@ -263,8 +311,12 @@ static void test_simulated_time_moves_only_with_advance(void)
 
 static void test_spi_bytes_are_two_hex_digits(void)
 {
-    static const char *const bad[] = {"spi", "spi 0", "spi 000", "spi 0x00", "spi 00 0", "spi 00 00 01 00 0g", "spi 00,00", "spi -1",
-                                      "spi +1 00", "spi 00 00 01 00 00 zz", "spi 0001000000"};
+    static const char *const bad[] = {"spi",           "spi 0",
+                                      "spi 000",       "spi 0x00",
+                                      "spi 00 0",      "spi 00 00 01 00 0g",
+                                      "spi 00,00",     "spi -1",
+                                      "spi +1 00",     "spi 00 00 01 00 00 zz",
+                                      "spi 0001000000"};
 
     expect("stack 1", "ok");
     expect("inject miso 24", "ok");
@@ -304,7 +356,8 @@ static void test_peek(void)
 static void test_inject_flips_the_bits_of_one_packet(void)
 {
     expect("stack 1", "ok");
-    expect("inject miso 24", "ok"); /* bit 0 is the first on the wire: 24 is the highest bit of the fourth byte */
+    expect("inject miso 24",
+           "ok"); /* bit 0 is the first on the wire: 24 is the highest bit of the fourth byte */
     expect("spi 00 00 01 00 00", "ok -- -- -- e1 35");
     expect("spi 00 00 01 00 00", "ok -- -- -- 61 35");
     expect("inject miso 24", "ok");
@@ -329,8 +382,9 @@ static void test_inject_flips_the_bits_of_one_packet(void)
 
 static void test_inject_is_checked(void)
 {
-    static const char *const bad[] = {"inject", "inject mosi", "inject miso", "inject mosi -1", "inject mosi 1.0", "inject mosi 0x1",
-                                      "inject mosi 99999999", "inject mosi 1 1", "inject sclk 1", "inject MOSI 1"};
+    static const char *const bad[] = {
+        "inject",          "inject mosi",          "inject miso",     "inject mosi -1", "inject mosi 1.0",
+        "inject mosi 0x1", "inject mosi 99999999", "inject mosi 1 1", "inject sclk 1",  "inject MOSI 1"};
 
     expect("stack 1", "ok");
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -346,7 +400,8 @@ static void test_inject_is_checked(void)
 
 static void test_the_afe_family_says_that_it_is_missing(void)
 {
-    static const char *const lines[] = {"afe bq7694003", "i2c S 10 P", "set afe.cell.1 3.6", "get afe.mode", "peek afe 00", "inject sda 3"};
+    static const char *const lines[] = {"afe bq7694003", "i2c S 10 P",  "set afe.cell.1 3.6",
+                                        "get afe.mode",  "peek afe 00", "inject sda 3"};
 
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         refused(lines[i]);
@@ -393,7 +448,7 @@ static void test_long_lines(void)
         n += 3;
     }
     TEST_ASSERT_EQUAL(BQSIM_OK, bqsim_exec(&session, longest, reply, sizeof reply));
-    TEST_ASSERT_EQUAL(n - 1, strlen(reply)); /* ok is one shorter than spi */
+    TEST_ASSERT_EQUAL(n - 1, strlen(reply));                                  /* ok is one shorter than spi */
     TEST_ASSERT_EQUAL(BQSIM_ERR, bqsim_exec(&session, longest, reply, 1000)); /* a reply that does not fit */
     memset(longest, ' ', sizeof longest);
     memcpy(longest, "get", 3);

@@ -64,7 +64,8 @@ static int script(const void *text, size_t n)
 
 static void test_replies_and_status_0(void)
 {
-    static const char text[] = "# two devices\n\nstack 2\nspi 01 3b 01 02\nspi 02 3b 01 00 00\nget dev.2.mode\nquit\nhello\n";
+    static const char text[] =
+        "# two devices\n\nstack 2\nspi 01 3b 01 02\nspi 02 3b 01 00 00\nget dev.2.mode\nquit\nhello\n";
     static const char replies[] = "ok\nok -- -- -- --\nok -- -- -- 81 ba\nok active\nok\n";
 
     TEST_ASSERT_EQUAL(0, script(text, sizeof text - 1));
@@ -165,7 +166,8 @@ static void test_each_reply_is_flushed_before_the_next_command_is_read(void)
     (void)close(from[1]);
     for (int i = 0; i < 3; i++) {
         TEST_ASSERT_EQUAL(8, write(to[1], "stack 1\n", 8));
-        TEST_ASSERT_EQUAL(3, read(from[0], reply, sizeof reply)); /* would wait for ever if it were buffered */
+        TEST_ASSERT_EQUAL(3,
+                          read(from[0], reply, sizeof reply)); /* would wait for ever if it were buffered */
         TEST_ASSERT_EQUAL_MEMORY("ok\n", reply, 3);
     }
     (void)close(to[1]);
@@ -185,7 +187,8 @@ static void test_replies_that_cannot_be_written_end_in_status_1(void)
 
 static void test_vcd_file_is_written_and_its_failure_is_status_1(void)
 {
-    static const char text[] = "stack 1\nspi 00 00 01 00 00\nadvance 1ms\nset pin.conv 1\nadvance 1ms\nset pin.conv 0\n";
+    static const char text[] =
+        "stack 1\nspi 00 00 01 00 00\nadvance 1ms\nset pin.conv 1\nadvance 1ms\nset pin.conv 0\n";
 
     write_file("script", text, sizeof text - 1);
     TEST_ASSERT_EQUAL(0, run("--vcd w.vcd script && cat w.vcd"));
