@@ -80,6 +80,6 @@ build_preset() { # build_preset PRESET [OPTION...] [-- TARGET...]
     fresh_if_foreign "$root/build/$preset"
     (cd "$root" && cmake --preset "$preset" -G "$generator" "${options[@]}") >"$TMPDIR/$preset.log" 2>&1 &&
         cmake --build "$root/build/$preset" -j "$jobs" "${targets[@]}" >>"$TMPDIR/$preset.log" 2>&1 && return 0
-    tail -n 60 "$TMPDIR/$preset.log" >&2
+    grep -vE "^\[[0-9]+/[0-9]+\]|^-- " "$TMPDIR/$preset.log" | tail -n 60 >&2
     return 1
 }
