@@ -82,6 +82,12 @@ void ps_rig_advance(ps_rig *r, uint64_t ns)
     }
 }
 
+/* The back-end lets time pass while the bus is busy. */
+static void advance_hook(void *ctx, uint64_t ns)
+{
+    ps_rig_advance(ctx, ns);
+}
+
 bool ps_rig_outputs_on(const ps_rig *r)
 {
     return hal_sim_line(&r->hal, BQ_LINE_CONTACTOR);
@@ -193,6 +199,9 @@ int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
         (void)sim_pl_set_otp(&r->pl, k, FUNCTION_CONFIG, FAST_CONVERSIONS);
     }
     hal_sim_init(&r->hal, &r->pl);
+    r->hal.advance = advance_hook;
+    r->hal.advance_ctx = r;
+    r->hal.missing = 1u << (unsigned)BQ_LINE_AFE_POWER; /* the supply is the scenario's affair */
     show(r);
     bq_status status = boot(r);
     if (status != BQ_OK) {
