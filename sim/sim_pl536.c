@@ -74,13 +74,13 @@ int sim_pl_init(sim_pl *s, int devices, const sim_pl_options *options)
     return 0;
 }
 
-static uint8_t status_of(const sim_pl_dev *d)
+static uint8_t status_of(const sim_pl *s, const sim_pl_dev *d)
 {
     unsigned status = d->reg[REG_STATUS] & ST_ECC_COR;
 
     status |= d->reg[REG_ADDRESS] & ADDR_AR;
     status |= (d->reg[REG_FAULT] & FA_ALL) != 0 ? ST_FAULT : 0u;
-    status |= d->reg[REG_ALERT] != 0 ? ST_ALERT : 0u;
+    status |= d->reg[REG_ALERT] != 0 || (s->options.amb48_ecc_alert && (status & ST_ECC_COR) != 0) ? ST_ALERT : 0u;
     status |= d->uvlo ? ST_UVLO : 0u;
     status |= d->cb_running ? ST_CBT : 0u;
     status |= d->drdy ? ST_DRDY : 0u;
@@ -116,7 +116,8 @@ static uint64_t device_next(const sim_pl_dev *d)
 void sim_pl_touch(sim_pl *s, sim_pl_dev *d)
 {
     if (sim_pl_is_on(d)) {
-        d->reg[REG_STATUS] = status_of(d);
+        d->reg[REG_ADC_CONVERT] = s->options.amb68_conv_reads_one && d->conv_end != SIM_PL_NEVER;
+        d->reg[REG_STATUS] = status_of(s, d);
     }
     d->next = device_next(d);
     s->next = earlier(s->next, d->next);

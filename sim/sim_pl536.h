@@ -38,17 +38,29 @@ typedef struct sim_pl_options {
     double delay_percent;        /**< protection delays and timers scaled by (1 + this/100), -12..10 */
     bool deglitch;               /**< add the 50 us start-up deglitch to protection delays (PL-FLT-04) */
     bool strict_timing;          /**< judge bus timing given with sim_pl_spi_timed() (PL-SPI-12) */
+    bool amb01_crc_alert;        /**< PL-AMB-01: a CRC error asserts the ALERT line as well */
+    bool amb02_crc_last_packet;  /**< PL-AMB-02: the next good write to the device clears FAULT_STATUS[CRC] */
+    bool amb06_all_check;        /**< PL-AMB-06: every device that sees a damaged write flags it */
     bool amb12_idle_ff;          /**< PL-AMB-12: an undriven byte reads 0xff while CS is low */
+    bool amb18_addressed_only;   /**< PL-AMB-18: a device at 0x00 executes no broadcast but RESET */
     bool amb26_needs_bit7;       /**< PL-AMB-26: an address write counts only with bit 7 set */
+    bool amb28_ar_copy;          /**< PL-AMB-28: ALERT_STATUS[AR] is the inverted copy of ADDRESS_CONTROL[AR] */
     bool amb33_hold_until_zero;  /**< PL-AMB-33: latch held cleared until the 0 is written */
     bool amb40_sticky_cells;     /**< PL-AMB-40: COV_FAULT/CUV_FAULT clear only when the comparator releases */
+    bool amb48_ecc_alert;        /**< PL-AMB-48: a corrected EPROM error sets DEVICE_STATUS[ALERT] and the line */
     bool amb49_no_ifault;        /**< PL-AMB-49: ECC error sets ECC_ERR only */
+    bool amb51_sleep_on_exit;    /**< PL-AMB-51: leaving SLEEP sets ALERT_STATUS[SLEEP] too */
     bool amb54_reset_no_por;     /**< PL-AMB-54: RESET command does not set FAULT_STATUS[POR] */
+    bool amb62_six_us;           /**< PL-AMB-62: ADCT = 00b takes 6 us per channel */
+    bool amb68_conv_reads_one;   /**< PL-AMB-68: ADC_CONVERT[CONV] reads 1 until the cycle ends */
     bool amb78_drdy_zero;        /**< PL-AMB-78: DRDY is 0 until the first conversion */
     bool amb79_drdy_base_only;   /**< PL-AMB-79: DRDY_H shows the base device only */
     bool amb83_any_rise;         /**< PL-AMB-83: any 0-to-1 change in CB_CTRL restarts the timer */
     bool amb84_clear_cbctrl;     /**< PL-AMB-84: expiry clears CB_CTRL */
+    bool amb85_time_restarts;    /**< PL-AMB-85: writing CB_TIME restarts a running period with the new value */
     bool amb86_sleep_stops_cb;   /**< PL-AMB-86: SLEEP and TSD stop balancing */
+    uint32_t amb93_reset_us;     /**< PL-AMB-93: duration of RESET; 0 = 500 us */
+    bool amb99_discarded_cancels; /**< PL-AMB-99: a write discarded for its CRC cancels the key */
     bool amb100_user_readonly;   /**< PL-AMB-100: USERn cannot be written */
     double reg50_v;              /**< REG50 as GPAI reference (PL-AMB-57); 0 = 5.0 V */
     double wire_drift;           /**< how far an open sense wire drifts, see sim_pl536_analog.c; 0 = 0.5 */

@@ -18,6 +18,11 @@ static unsigned channels(unsigned select)
     return cells_selected(select) + ((select >> 3) & 1u) + ((select >> 4) & 1u) + ((select >> 5) & 1u);
 }
 
+static uint64_t channel_time(const sim_pl *s, unsigned adct)
+{
+    return channel_ns[adct == 0 && s->options.amb62_six_us ? 1 : adct];
+}
+
 static unsigned speed(const sim_pl *s, const sim_pl_dev *d)
 {
     return s->options.variant_a ? 1u : d->reg[REG_FUNCTION] >> 6;
@@ -82,7 +87,7 @@ void sim_pl_adc_start(sim_pl *s, sim_pl_dev *d, bool by_pin)
     }
     d->conv_select = d->reg[REG_ADC_CONTROL];
     d->conv_adct = (uint8_t)speed(s, d);
-    d->conv_end = from + wake + sim_pl_scaled(s, (channels(d->conv_select) + 1u) * channel_ns[d->conv_adct]);
+    d->conv_end = from + wake + sim_pl_scaled(s, (channels(d->conv_select) + 1u) * channel_time(s, d->conv_adct));
     d->drdy = false;
 }
 

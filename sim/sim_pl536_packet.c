@@ -161,6 +161,7 @@ static void carry_read(sim_pl *s, const packet *p)
 static void crc_error(sim_pl *s, sim_pl_dev *d)
 {
     sim_pl_fault_set(d, FA_CRC);
+    d->key = d->key && !s->options.amb99_discarded_cancels;
     sim_pl_touch(s, d);
 }
 
@@ -190,15 +191,37 @@ static void write_to(sim_pl *s, sim_pl_dev *d, const packet *p, bool broadcast)
     }
 }
 
+static bool executes(const sim_pl *s, const sim_pl_dev *d, const packet *p)
+{
+    unsigned address = p->tx[0] >> 1;
+
+    if (address == ADDR_BROADCAST && s->options.amb18_addressed_only && (d->reg[REG_ADDRESS] & ADDR_AR) == 0) {
+        return p->bytes >= 2 && p->tx[1] == REG_RESET;
+    }
+    return address == ADDR_BROADCAST || sim_pl_address(d) == address;
+}
+
+/* PL-AMB-06, the other reading: a bystander that keeps its CRC on checks as well. */
+static void bystander(sim_pl *s, sim_pl_dev *d, const packet *p)
+{
+    bool good = p->bits == 32 && sim_pl_crc8(0, p->tx, 3) == p->tx[3];
+
+    if (s->options.amb06_all_check && !good && (d->reg[REG_IO_CONFIG] & IOC_CRC_DIS) == 0) {
+        crc_error(s, d);
+    }
+}
+
 static void carry_write(sim_pl *s, const packet *p)
 {
     unsigned address = p->tx[0] >> 1;
     int reach = s->reach; /* fixed while chip select is low, whatever the write changes */
 
-    if (address == ADDR_BROADCAST || s->duplicate) {
+    if (address == ADDR_BROADCAST || s->duplicate || s->options.amb06_all_check) {
         for (int i = 0; i < reach; i++) {
-            if (address == ADDR_BROADCAST || sim_pl_address(&s->dev[i]) == address) {
+            if (executes(s, &s->dev[i], p)) {
                 write_to(s, &s->dev[i], p, address == ADDR_BROADCAST);
+            } else {
+                bystander(s, &s->dev[i], p);
             }
         }
     } else if (s->by_address[address] != 0) {

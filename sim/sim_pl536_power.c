@@ -54,6 +54,11 @@ static void go_off(sim_pl *s, sim_pl_dev *d)
     sim_pl_chain_changed(s);
 }
 
+static uint64_t reset_time(const sim_pl *s)
+{
+    return s->options.amb93_reset_us != 0 ? s->options.amb93_reset_us * SIM_PL_US : RESET_TIME;
+}
+
 void sim_pl_reset_enter(sim_pl *s, sim_pl_dev *d, bool by_command)
 {
     memset(d->reg, 0, sizeof d->reg);
@@ -61,7 +66,7 @@ void sim_pl_reset_enter(sim_pl *s, sim_pl_dev *d, bool by_command)
     d->drdy = false;
     d->by_command = by_command;
     d->power = SIM_PL_POWER_RESET;
-    d->reset_end = s->now + (by_command ? RESET_TIME : POR_TIME);
+    d->reset_end = s->now + (by_command ? reset_time(s) : POR_TIME);
     sim_pl_inputs(s, d);
     sim_pl_chain_changed(s);
 }
@@ -186,6 +191,9 @@ void sim_pl_sleep_request(sim_pl *s, sim_pl_dev *d)
     } else if (!wanted && d->asleep) {
         d->asleep = d->slept_by_host = false;
         d->blank_end = s->now + BLANK_TIME;
+        if (s->options.amb51_sleep_on_exit) {
+            sim_pl_alert_set(d, AL_SLEEP);
+        }
         sim_pl_adc_wake(s, d);
     }
 }

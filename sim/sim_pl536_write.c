@@ -63,6 +63,8 @@ void sim_pl_do_cb_time(sim_pl *s, sim_pl_dev *d, uint8_t value)
     d->reg[REG_CB_TIME] = value & 0xbf;
     if ((value & 0x3f) == 0) {
         sim_pl_balance_stop(s, d);
+    } else if (s->options.amb85_time_restarts && d->cb_running) {
+        balance_start(s, d);
     }
 }
 
@@ -137,6 +139,9 @@ void sim_pl_do_address(sim_pl *s, sim_pl_dev *d, uint8_t value)
         d->reg[REG_ADDRESS] = (uint8_t)(ADDR_AR | address);
         d->address_generation = s->generation;
         d->lost = false;
+        if (s->options.amb28_ar_copy) {
+            d->reg[REG_ALERT] &= (uint8_t)~AL_AR;
+        }
     }
     s->reach_valid = false;
 }
@@ -181,6 +186,9 @@ void sim_pl_write(sim_pl *s, sim_pl_dev *d, uint8_t reg, uint8_t value, bool bro
     bool key = d->key;
 
     sim_pl_judge_write(s, d, reg, value, key, broadcast);
+    if (s->options.amb02_crc_last_packet) {
+        d->reg[REG_FAULT] &= (uint8_t)~FA_CRC;
+    }
     d->key = false; /* one valid write of any kind uses it up (PL-G3-03, PL-AMB-99) */
     if (reg != REG_TEST_SELECT) {
         d->test_step = false;
