@@ -97,8 +97,12 @@ sed -i 's/static void test_a(void)/static int x;/; s/RUN_TEST(test_a)/return 0/'
 expect 1 'no function follows' 'a claim that belongs to no test'
 
 fresh
+sed -i 's|^/[*] proves:|/* What it is about.\n * proves:|' "$tree/tests/unit/a/test_a.c"
+expect 0 '^PL-CRC +3 +2 ' 'a claim may follow a sentence'
+
+fresh
 printf 'int a; /* proves: PL-CRC-02 */\n' >>"$tree/tests/unit/a/test_a.c"
-expect 1 'must open a comment' 'a claim in the wrong place'
+expect 1 'must begin a line of a comment' 'a claim in the wrong place'
 
 fresh
 rm "$tree/docs/requirements/list.md"
