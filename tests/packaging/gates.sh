@@ -8,7 +8,7 @@ export LC_ALL
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$1"
 shift
-[ $# -gt 0 ] || set -- words arrows length spdx unfinished unity
+[ $# -gt 0 ] || set -- words arrows length spdx unfinished unity links
 
 rooms() { # rooms GLOB ROOM...: the files of some rooms, those that do not exist left out
     glob=$1
@@ -130,6 +130,21 @@ gate_unity() {
               for (i = 1; i <= n; i++)
                   if (word[i] ~ /^TEST_(ASSERT|FAIL|IGNORE|MESSAGE|PASS)/ && !(word[i] in known))
                       print file ":" NR ": " word[i] " is no macro of Unity" }'
+    done
+}
+
+# What a document points to exists.
+gate_links() {
+    for f in *.md docs/*.md; do
+        [ -f "$f" ] || continue
+        awk '{ rest = $0
+               while (match(rest, /\]\([^)]*\)/)) {
+                   print NR, substr(rest, RSTART + 2, RLENGTH - 3); rest = substr(rest, RSTART + RLENGTH) } }' "$f" |
+            while read -r line target; do
+                case $target in http*) continue ;; esac
+                target=${target%%#*}
+                [ -e "$(dirname "$f")/$target" ] || echo "$f:$line: no $target"
+            done
     done
 }
 

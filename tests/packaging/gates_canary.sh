@@ -25,6 +25,7 @@ fresh() {
     put sim/sim_chip.c '#include "sim_chip.h"'
     put tests/unit/t.c 'TEST_ASSERT_EQUAL(1, 1);' '/* TEST_ASSERT_SAME */'
     put tools/t.c '#include "sim_chip.h"'
+    echo 'See [the tool](tools/t.c#top) and [the web](https://example.com).' >"$tree/README.md"
 }
 
 put() { # put FILE LINE...: a source file with an SPDX line and these lines
@@ -79,6 +80,8 @@ echo 'int x;' >"$tree/sim/sim_chip.c";                      red spdx sim/sim_chi
 echo 'add_library(x)' >"$tree/sim/CMakeLists.txt";          red spdx sim/CMakeLists.txt:1 'no licence line in a build file'
 put tools/t.c '/* TO''DO: later */';                        red unfinished tools/t.c:2 'something left for later'
 put tests/unit/t.c 'TEST_ASSERT_SAME(1, 1);';               red unity tests/unit/t.c:2 'a macro that Unity does not have'
+
+echo '[gone](docs/gone.md)' >"$tree/README.md";            red links README.md:1 'a link to nothing'
 
 rm -rf "$tree"
 exit $failed
