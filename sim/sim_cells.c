@@ -40,9 +40,10 @@ static int count_cells(const sim_cells_config *k)
 
 static bool valid(const sim_cells_config *k)
 {
-    return k->ocv != NULL && k->ocv->points >= 2 && in(k->capacity_ah, 1e-3, 1e6) && in(k->resistance_ohm, 0.0, 1e3) &&
-           in(k->soc_percent, 0.0, 100.0) && in(k->soc_spread_percent, 0.0, 100.0) &&
-           in(k->ambient_c, SIM_CELLS_T_MIN, SIM_CELLS_T_MAX) && in(k->bleed_ohm, 1e-3, 1e9);
+    return k->ocv != NULL && k->ocv->points >= 2 && in(k->capacity_ah, 1e-3, 1e6) &&
+           in(k->resistance_ohm, 0.0, 1e3) && in(k->soc_percent, 0.0, 100.0) &&
+           in(k->soc_spread_percent, 0.0, 100.0) && in(k->ambient_c, SIM_CELLS_T_MIN, SIM_CELLS_T_MAX) &&
+           in(k->bleed_ohm, 1e-3, 1e9);
 }
 
 static void fill_ratio_table(sim_cells *c)
@@ -211,7 +212,8 @@ int sim_cells_free(sim_cells *c, int cell)
 
 int sim_cells_force_sensor(sim_cells *c, int sensor, double celsius)
 {
-    if (sensor < 1 || sensor > c->config.modules * SIM_CELLS_SENSORS || !in(celsius, SIM_CELLS_T_MIN, SIM_CELLS_T_MAX)) {
+    if (sensor < 1 || sensor > c->config.modules * SIM_CELLS_SENSORS ||
+        !in(celsius, SIM_CELLS_T_MIN, SIM_CELLS_T_MAX)) {
         return -1;
     }
     c->forced_t[sensor - 1] = celsius;

@@ -33,7 +33,8 @@ static int parse_pair(const char *text, double *a, double *b)
     return 0;
 }
 
-static const char *take_line(char *text, const char *header, int *header_seen, sim_cells_csv_row row, void *ctx)
+static const char *take_line(char *text, const char *header, int *header_seen, sim_cells_csv_row row,
+                             void *ctx)
 {
     if (text[0] == '\0' || text[0] == '#') {
         return NULL;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file sim_ocv.h
- * Open-circuit voltage of a cell by state of charge: a table, linear between its points and continued beyond its ends
- * with the slope of the last segment (an overcharged cell keeps rising), within 0..SIM_OCV_V_MAX.
+ * Open-circuit voltage of a cell by state of charge: a table, linear between its points and continued beyond
+ * its ends with the slope of the last segment (an overcharged cell keeps rising), within 0..SIM_OCV_V_MAX.
  */
 #ifndef SIM_OCV_H
 #define SIM_OCV_H
@@ -20,9 +20,9 @@ typedef struct sim_ocv {
 } sim_ocv;
 
 /**
- * Reads a CSV file: lines beginning with # and empty lines are skipped, then the header `soc_percent,ocv_v`, then rows
- * with SOC rising within 0..100 and volts 0..SIM_OCV_V_MAX; at least two. Returns 0; or -1 with `FILE:LINE: reason` in `error`
- * and `ocv` unchanged.
+ * Reads a CSV file: lines beginning with # and empty lines are skipped, then the header `soc_percent,ocv_v`,
+ * then rows with SOC rising within 0..100 and volts 0..SIM_OCV_V_MAX; at least two. Returns 0; or -1 with
+ * `FILE:LINE: reason` in `error` and `ocv` unchanged.
  */
 int sim_ocv_load(sim_ocv *ocv, const char *path, char *error, size_t error_size);
 

@@ -152,17 +152,20 @@ static int other_chip(const context *c, ps_event *v)
     return ps_fail(c->e, c->at, "%s concerns a bq769x0; this pack has a bq76pl536 stack", c->w->word[0]);
 }
 
-int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at, ps_error *e)
+int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at,
+                   ps_error *e)
 {
     static const struct {
         const char *verb;
         int least, most; /* words */
         int (*parse)(const context *c, ps_event *v);
     } verbs[] = {
-        {"cell", 3, 4, cell_action},       {"sensor", 4, 4, sensor_action}, {"current", 2, 2, current_action},
-        {"request", 2, 2, request_action}, {"break", 3, 3, break_action},   {"mend", 1, 1, mend_action},
-        {"device", 3, 3, device_action},   {"wire", 3, 3, wire_action},     {"spi", 3, 3, flip_action},
-        {"bus", 2, 3, bus_action},         {"mcu", 2, 2, mcu_action},       {"contactor", 2, 2, weld_action},
+        {"cell", 3, 4, cell_action},       {"sensor", 4, 4, sensor_action},
+        {"current", 2, 2, current_action}, {"request", 2, 2, request_action},
+        {"break", 3, 3, break_action},     {"mend", 1, 1, mend_action},
+        {"device", 3, 3, device_action},   {"wire", 3, 3, wire_action},
+        {"spi", 3, 3, flip_action},        {"bus", 2, 3, bus_action},
+        {"mcu", 2, 2, mcu_action},         {"contactor", 2, 2, weld_action},
         {"i2c", 1, PS_WORDS, other_chip},  {"afe", 1, PS_WORDS, other_chip},
     };
     memset(v, 0, sizeof *v);

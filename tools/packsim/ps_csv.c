@@ -113,9 +113,10 @@ int ps_csv_open(ps_csv *c, const char *path, int cells)
         return -1;
     }
     (void)setvbuf(c->file, NULL, _IOFBF, 1u << 18);
-    (void)fputs("time_s,state,current_a,pack_v,soc_percent,cell_min_mv,cell_max_mv,cell_min_true_mv,cell_max_true_mv,"
-                "temp_max_c,balancing_cells,fault_count",
-                c->file);
+    (void)fputs(
+        "time_s,state,current_a,pack_v,soc_percent,cell_min_mv,cell_max_mv,cell_min_true_mv,cell_max_true_mv,"
+        "temp_max_c,balancing_cells,fault_count",
+        c->file);
     for (int i = 1; i <= cells; i++) {
         (void)fprintf(c->file, ",cell_%d_mv", i);
     }

@@ -115,7 +115,8 @@ static int expect_no(const context *c, ps_expect *x)
     }
     x->kind = PS_EXP_NO_FAULT_BEFORE;
     int i = 3;
-    if (!ps_is(c->w, 1, "fault") || !ps_is(c->w, 2, "before") || !ps_time_words(c->w, &i, &x->t) || i != c->w->count) {
+    if (!ps_is(c->w, 1, "fault") || !ps_is(c->w, 2, "before") || !ps_time_words(c->w, &i, &x->t) ||
+        i != c->w->count) {
         return refuse(c, "no fault before T, or no faults");
     }
     return 0;
@@ -169,7 +170,8 @@ static int expect_measurement(const context *c, ps_expect *x)
 static int expect_outputs(const context *c, ps_expect *x)
 {
     x->kind = PS_EXP_OUTPUTS_OFF;
-    return ps_is(c->w, 1, "off") && within(c->w, 2, &x->t, &x->t0) ? 0 : refuse(c, "outputs off within T of T0");
+    return ps_is(c->w, 1, "off") && within(c->w, 2, &x->t, &x->t0) ? 0
+                                                                   : refuse(c, "outputs off within T of T0");
 }
 
 static int expect_recovered(const context *c, ps_expect *x)
@@ -199,10 +201,17 @@ int ps_expect_parse(ps_expect *x, const ps_scenario *s, const char *text, ps_pla
         const char *word;
         int (*parse)(const context *c, ps_expect *x);
     } kinds[] = {
-        {"state", expect_state},     {"fault", expect_fault},     {"no", expect_no},
-        {"discovered", expect_discovered}, {"spread", expect_spread},   {"soc", expect_soc},
-        {"measurement", expect_measurement}, {"outputs", expect_outputs}, {"recovered", expect_recovered},
-        {"misuse", expect_misuse},   {"speed", expect_speed},
+        {"state", expect_state},
+        {"fault", expect_fault},
+        {"no", expect_no},
+        {"discovered", expect_discovered},
+        {"spread", expect_spread},
+        {"soc", expect_soc},
+        {"measurement", expect_measurement},
+        {"outputs", expect_outputs},
+        {"recovered", expect_recovered},
+        {"misuse", expect_misuse},
+        {"speed", expect_speed},
     };
     memset(x, 0, sizeof *x);
     x->at = at;

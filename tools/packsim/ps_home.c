@@ -15,7 +15,8 @@
 void ps_home(char *path, size_t size, const char *argv0, const char *folder)
 {
     char real[PATH_MAX];
-    const char *slash = strchr(argv0, '/') != NULL && realpath(argv0, real) != NULL ? strrchr(real, '/') : NULL;
+    const char *slash =
+        strchr(argv0, '/') != NULL && realpath(argv0, real) != NULL ? strrchr(real, '/') : NULL;
     if (slash != NULL) {
         static const char *const places[] = {"", "/../share/bqhost/packsim"};
         for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {

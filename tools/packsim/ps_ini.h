@@ -13,7 +13,7 @@
 
 typedef struct ps_ini_entry {
     char section[32];
-    char key[64];              /**< empty for a line without '=' (section [expect]) */
+    char key[64]; /**< empty for a line without '=' (section [expect]) */
     char value[PS_INI_TEXT];
     ps_place at;
     bool used;
@@ -27,7 +27,8 @@ typedef struct ps_ini {
 /** Reads `path`, which must outlive `ini`. 0, or -1 with the error recorded. */
 int ps_ini_read(ps_ini *ini, const char *path, ps_error *e);
 
-/** Applies `SECTION.KEY=VALUE`: replaces the entry or adds it. `number` is the place reported, as in --set:NUMBER. */
+/** Applies `SECTION.KEY=VALUE`: replaces the entry or adds it. `number` is the place reported, as in
+ * --set:NUMBER. */
 int ps_ini_set(ps_ini *ini, const char *assignment, int number, ps_error *e);
 
 /** The value of a key, marked as used; NULL when absent. `*at` gets its place. */

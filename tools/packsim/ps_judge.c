@@ -116,7 +116,8 @@ void ps_judge_fault(ps_judge *j, const ps_fault_seen *f)
     double seconds = (double)f->t / 1e9;
     for (int i = 0; i < j->s->expects; i++) {
         const ps_expect *x = &j->s->expect[i];
-        if (x->kind == PS_EXP_FAULT && x->id == f->id && same_item(x, f) && f->t >= x->t0 && f->t <= x->t0 + x->t) {
+        if (x->kind == PS_EXP_FAULT && x->id == f->id && same_item(x, f) && f->t >= x->t0 &&
+            f->t <= x->t0 + x->t) {
             decide(&j->verdict[i], true, "seen");
         } else if (x->kind == PS_EXP_NO_FAULTS || (x->kind == PS_EXP_NO_FAULT_BEFORE && f->t < x->t)) {
             decide(&j->verdict[i], false, "%s at %.3f s", name, seconds);

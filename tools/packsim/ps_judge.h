@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file ps_judge.h
- * Judges the expectations of a scenario while it runs, from what is reported to it; it looks at nothing by itself.
+ * Judges the expectations of a scenario while it runs, from what is reported to it; it looks at nothing by
+ * itself.
  */
 #ifndef PS_JUDGE_H
 #define PS_JUDGE_H
@@ -12,11 +13,11 @@
 
 /** What can be looked at at a given moment. */
 typedef struct ps_view {
-    int state;         /**< bq_pack_state_id */
-    int found;         /**< modules the firmware has found */
-    bool outputs_on;   /**< level of the contactor line */
-    bool healthy;      /**< no fault active, all modules found, every value valid, standby or on */
-    double spread_mv;  /**< true highest minus lowest cell */
+    int state;        /**< bq_pack_state_id */
+    int found;        /**< modules the firmware has found */
+    bool outputs_on;  /**< level of the contactor line */
+    bool healthy;     /**< no fault active, all modules found, every value valid, standby or on */
+    double spread_mv; /**< true highest minus lowest cell */
 } ps_view;
 
 /** What is known only at the end. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The [limits] section: fields of the pack controller, of the super-loop and of the driver, under the firmware's own names. */
+/* The [limits] section: fields of the pack controller, of the super-loop and of the driver, under the
+ * firmware's own names. */
 #include "ps_scenario.h"
 
 #include <stddef.h>
@@ -11,8 +12,10 @@ static const struct {
     const char *name;
     size_t offset, size;
 } fields[] = {
-#define DRIVER(name, member)                                                                                          \
-    {name, offsetof(ps_scenario, driver.member), sizeof(((ps_scenario *)NULL)->driver.member)}
+#define DRIVER(name, member)                                                                                 \
+    {                                                                                                        \
+        name, offsetof(ps_scenario, driver.member), sizeof(((ps_scenario *)NULL)->driver.member)             \
+    }
     DRIVER("cov_mv", cov_mv),
     DRIVER("cuv_mv", cuv_mv),
     DRIVER("cov_delay_us", cov_delay_us),
@@ -66,7 +69,9 @@ static int set_field(ps_scenario *s, const char *key, int value)
         uint8_t u8 = (uint8_t)value;
         uint16_t u16 = (uint16_t)value;
         uint32_t u32 = (uint32_t)value;
-        const void *from = fields[i].size == 1 ? (const void *)&u8 : fields[i].size == 2 ? (const void *)&u16 : &u32;
+        const void *from = fields[i].size == 1   ? (const void *)&u8
+                           : fields[i].size == 2 ? (const void *)&u16
+                                                 : &u32;
         memcpy(p, from, fields[i].size);
         return 0;
     }
@@ -87,7 +92,8 @@ static int apply_key(ps_scenario *s, const char *key, const char *text, ps_place
     if (!ps_int(text, &value)) {
         return ps_fail(e, at, "%s: %s is not a whole number", key, text);
     }
-    bool refused = known != 1 ? set_field(s, key, value) != 0 : bq_pack_config_set(&s->app.pack, key, value) != BQ_OK;
+    bool refused =
+        known != 1 ? set_field(s, key, value) != 0 : bq_pack_config_set(&s->app.pack, key, value) != BQ_OK;
     return refused ? ps_fail(e, at, "%s: %d is outside its range", key, value) : 0;
 }
 
@@ -115,7 +121,8 @@ void ps_limits_default(ps_scenario *s, bool lfp)
 {
     uint16_t cells = (uint16_t)s->cells, sensors = (uint16_t)(s->devices * SIM_CELLS_SENSORS);
     uint16_t modules = (uint16_t)s->devices;
-    s->app.pack = lfp ? bq_pack_config_lfp(cells, sensors, modules) : bq_pack_config_nmc(cells, sensors, modules);
+    s->app.pack =
+        lfp ? bq_pack_config_lfp(cells, sensors, modules) : bq_pack_config_nmc(cells, sensors, modules);
     s->app.period_ms = (uint32_t)(s->period / PS_MS);
     uint32_t patience = 4u * s->app.period_ms;
     if (s->app.pack.comm_timeout_ms < patience && patience <= 30000u) {
@@ -192,8 +199,10 @@ static bq_status check_stack(const ps_scenario *s, const char **field)
     return status;
 }
 
-/* Which line is to blame: that of the field itself, or the first that is refused when it alone differs from the defaults. */
-static ps_place blame(const ps_scenario *s, ps_ini *ini, const ps_scenario *plain, checker check, const char *field)
+/* Which line is to blame: that of the field itself, or the first that is refused when it alone differs from
+ * the defaults. */
+static ps_place blame(const ps_scenario *s, ps_ini *ini, const ps_scenario *plain, checker check,
+                      const char *field)
 {
     static ps_scenario one;
     ps_place at = s->pack_at;
@@ -230,8 +239,8 @@ static int refuse(const ps_scenario *s, ps_ini *ini, const ps_scenario *plain, c
         }
     }
     if (status == BQ_E_COV_CUV) {
-        return ps_fail(e, at, "cov_mv %u and cuv_mv %u are less than 300 mV apart (%s)", (unsigned)s->driver.cov_mv,
-                       (unsigned)s->driver.cuv_mv, bq_status_name(status));
+        return ps_fail(e, at, "cov_mv %u and cuv_mv %u are less than 300 mV apart (%s)",
+                       (unsigned)s->driver.cov_mv, (unsigned)s->driver.cuv_mv, bq_status_name(status));
     }
     if (key == NULL || strcmp(key, field) == 0) {
         return ps_fail(e, at, "%s is refused (%s)", field, bq_status_name(status));

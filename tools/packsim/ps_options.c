@@ -85,7 +85,8 @@ static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e
             return options[k].take(o, NULL, *i, e);
         }
         *i += 1;
-        return *i < argc ? options[k].take(o, argv[*i], *i, e) : usage(e, argv[*i - 1], *i - 1, "needs an argument");
+        return *i < argc ? options[k].take(o, argv[*i], *i, e)
+                         : usage(e, argv[*i - 1], *i - 1, "needs an argument");
     }
     return usage(e, argv[*i], *i, "unknown option (see packsim --help)");
 }
@@ -123,25 +124,36 @@ void ps_options_help(FILE *to)
         "        [--set SECTION.KEY=VALUE]... [--quiet]\n"
         "packsim --list\n"
         "\n"
-        "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, or the name\n"
+        "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, "
+        "or the name\n"
         "of one of the scenarios that --list shows. Times carry a unit: us, ms, s, min, h.\n"
-        "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing simulated.\n"
-        "--duration beyond or short of the scenario's own: expectations that look beyond a shortened run are left out.\n"
+        "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing "
+        "simulated.\n"
+        "--duration beyond or short of the scenario's own: expectations that look beyond a shortened run are "
+        "left out.\n"
         "\n"
-        "[pack]   monitor (bq76pl536), devices, cells, chemistry (nmc, lfp, FILE.csv), capacity_ah (5), resistance_mohm (2),\n"
-        "         soc_percent (50), soc_spread_percent (0), ambient_c (25), bleed_ohm (33), shunt_mohm (0.1),\n"
+        "[pack]   monitor (bq76pl536), devices, cells, chemistry (nmc, lfp, FILE.csv), capacity_ah (5), "
+        "resistance_mohm (2),\n"
+        "         soc_percent (50), soc_spread_percent (0), ambient_c (25), bleed_ohm (33), shunt_mohm "
+        "(0.1),\n"
         "         eprom (blank; fast = the chips wake up from a reset with 6 us conversions selected)\n"
         "[run]    duration (60 s), period (100 ms), seed (1)\n"
         "[load]   current_a (0) or file; request on|off (off)\n"
-        "[events] T = ACTION: cell N volts V; cell N free; sensor N celsius T; current A; current file; request on|off;\n"
-        "         break above K; mend; device K off|on; wire N open|closed; spi flip P; bus dead 00|ff; bus free;\n"
+        "[events] T = ACTION: cell N volts V; cell N free; sensor N celsius T; current A; current file; "
+        "request on|off;\n"
+        "         break above K; mend; device K off|on; wire N open|closed; spi flip P; bus dead 00|ff; bus "
+        "free;\n"
         "         mcu reset; contactor weld\n"
-        "         Two sensors per device. Wire N is the sense wire at the positive end of cell N, on the side of the device\n"
+        "         Two sensors per device. Wire N is the sense wire at the positive end of cell N, on the "
+        "side of the device\n"
         "         that measures this cell; wire 0 is the lowest of the pack.\n"
-        "[expect] state STATE at T; fault NAME [cell N | device K | sensor N] within T of T0; no fault before T; no faults;\n"
-        "         discovered K at T; spread below X mv at T; soc error below X percent; measurement error below X mv;\n"
+        "[expect] state STATE at T; fault NAME [cell N | device K | sensor N] within T of T0; no fault "
+        "before T; no faults;\n"
+        "         discovered K at T; spread below X mv at T; soc error below X percent; measurement error "
+        "below X mv;\n"
         "         outputs off within T of T0; recovered at T; misuse none; speed above X\n"
-        "         \"recovered\": standby or on, no fault, every device found and every value valid. Errors are the worst of the\n"
+        "         \"recovered\": standby or on, no fault, every device found and every value valid. Errors "
+        "are the worst of the\n"
         "         run. Spread is the true one.\n",
         to);
     (void)fputs("[limits] integers under the firmware's own names:\n", to);

@@ -24,7 +24,8 @@ typedef struct ps_options {
 int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e);
 void ps_options_help(FILE *to);
 
-/** Where the program's scenarios and data are: beside the executable, or in the source tree it was built from. */
+/** Where the program's scenarios and data are: beside the executable, or in the source tree it was built
+ * from. */
 void ps_home(char *path, size_t size, const char *argv0, const char *folder);
 /** Finds a scenario by path, or by bare name among those that come with packsim. The result may not exist. */
 void ps_find_scenario(char *path, size_t size, const char *name, const char *folder);

@@ -134,14 +134,14 @@ static bq_status boot(ps_rig *r)
     const bq_gpio gpio = hal_sim_gpio(&r->hal);
     const bq_clock clock = hal_sim_clock(&r->hal);
     const bq_ammeter ammeter = {read_ammeter, r};
-    bq_status status =
-        bq76pl536_init(&f->driver, &s->driver, &spi, &gpio, &clock, f->devices, (uint8_t)BQ76PL536_MAX_DEVICES);
+    bq_status status = bq76pl536_init(&f->driver, &s->driver, &spi, &gpio, &clock, f->devices,
+                                      (uint8_t)BQ76PL536_MAX_DEVICES);
     if (status != BQ_OK) {
         return status;
     }
     r->afe = bq76pl536_afe(&f->driver);
-    status = bq_app_init(&f->app, &s->app, &r->afe, &gpio, &clock, &ammeter, f->cells, SIM_CELLS_MAX, f->temps,
-                         SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
+    status = bq_app_init(&f->app, &s->app, &r->afe, &gpio, &clock, &ammeter, f->cells, SIM_CELLS_MAX,
+                         f->temps, SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
     return status;
 }
 

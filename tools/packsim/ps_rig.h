@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file ps_rig.h
- * The bench: firmware (super-loop, pack controller, driver), back-end, simulated stack and the world of cells, wired together.
+ * The bench: firmware (super-loop, pack controller, driver), back-end, simulated stack and the world of
+ * cells, wired together.
  */
 #ifndef PS_RIG_H
 #define PS_RIG_H
@@ -41,10 +42,10 @@ typedef struct ps_rig {
     sim_cells world;
     sim_vcd vcd;
     bool recording;
-    uint64_t step;      /**< of the world */
-    uint64_t world_t;   /**< moment the world stands at */
+    uint64_t step;       /**< of the world */
+    uint64_t world_t;    /**< moment the world stands at */
     uint64_t observed_t; /**< balancing outputs booked up to here */
-    double world_a;     /**< current at world_t */
+    double world_a;      /**< current at world_t */
     bool line_on, welded;
     bq_pack_request request; /**< what the user wants, over firmware resets */
     ps_truth truth[PS_TRUTHS];
@@ -62,7 +63,8 @@ int ps_rig_close(ps_rig *r);
 uint64_t ps_rig_now(const ps_rig *r);
 /** Lets simulated time pass, the world stepping on its grid. */
 void ps_rig_advance(ps_rig *r, uint64_t ns);
-/** To be called after the firmware ran: brings a moved contactor into the world. Returns true when its line moved. */
+/** To be called after the firmware ran: brings a moved contactor into the world. Returns true when its line
+ * moved. */
 bool ps_rig_sync(ps_rig *r);
 /** Level of the contactor line. */
 bool ps_rig_outputs_on(const ps_rig *r);

@@ -13,13 +13,13 @@
 typedef struct ps_run {
     ps_rig *rig;
     ps_judge *judge;
-    ps_csv *csv;       /**< NULL = no table */
-    bool progress;     /**< a line on standard error */
+    ps_csv *csv;   /**< NULL = no table */
+    bool progress; /**< a line on standard error */
     /* results */
-    int found;         /**< most devices found */
-    uint64_t scans;    /**< complete updates */
+    int found;             /**< most devices found */
+    uint64_t scans;        /**< complete updates */
     double bytes_per_scan; /**< on the bus, mean from one update to the next */
-    ps_totals totals;  /**< misuse and speed are filled at the end */
+    ps_totals totals;      /**< misuse and speed are filled at the end */
     double spread_start_mv, spread_end_mv;
     uint64_t simulated;
     /* private */

@@ -13,7 +13,8 @@ typedef struct build {
     ps_error *e;
 } build;
 
-static int number(const build *b, const char *section, const char *key, double low, double high, double *value)
+static int number(const build *b, const char *section, const char *key, double low, double high,
+                  double *value)
 {
     ps_place at;
     const char *text = ps_ini_get(b->ini, section, key, &at);
@@ -46,7 +47,9 @@ static int time_key(const build *b, const char *section, const char *key, uint64
     if (text == NULL) {
         return 0;
     }
-    return ps_time(text, ns) ? 0 : ps_fail(b->e, at, "%s: %s is not a time (number and us, ms, s, min or h)", key, text);
+    return ps_time(text, ns)
+               ? 0
+               : ps_fail(b->e, at, "%s: %s is not a time (number and us, ms, s, min or h)", key, text);
 }
 
 /* A file beside the scenario, in the working directory, or among the data that comes with packsim. */
@@ -94,7 +97,8 @@ static int build_cells(const build *b)
     ps_place at = s->pack_at;
     (void)ps_ini_get(b->ini, "pack", "cells", &at);
     if (s->cells < 3 * s->devices || s->cells > 6 * s->devices) {
-        return ps_fail(b->e, at, "%d cells cannot be shared by %d devices of 3 to 6 cells", s->cells, s->devices);
+        return ps_fail(b->e, at, "%d cells cannot be shared by %d devices of 3 to 6 cells", s->cells,
+                       s->devices);
     }
     s->world.modules = s->devices;
     for (int m = 0; m < s->devices; m++) {
@@ -290,7 +294,8 @@ static void cut(ps_scenario *s, uint64_t duration)
     s->expects = kept;
 }
 
-int ps_scenario_build(ps_scenario *s, ps_ini *ini, const ps_search *search, const ps_override *override, ps_error *e)
+int ps_scenario_build(ps_scenario *s, ps_ini *ini, const ps_search *search, const ps_override *override,
+                      ps_error *e)
 {
     const build b = {s, ini, search, e};
     bool lfp = false;

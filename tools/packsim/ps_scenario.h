@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file ps_scenario.h
- * A scenario with every value checked: what is simulated, what happens, what is expected. Filled before anything runs.
+ * A scenario with every value checked: what is simulated, what happens, what is expected. Filled before
+ * anything runs.
  */
 #ifndef PS_SCENARIO_H
 #define PS_SCENARIO_H
@@ -22,13 +23,13 @@ typedef enum ps_action_kind {
     PS_ACT_SENSOR,
     PS_ACT_CURRENT,
     PS_ACT_CURRENT_FILE,
-    PS_ACT_REQUEST,   /**< on */
+    PS_ACT_REQUEST, /**< on */
     PS_ACT_BREAK,
     PS_ACT_MEND,
-    PS_ACT_DEVICE,    /**< on */
-    PS_ACT_WIRE,      /**< on = open */
+    PS_ACT_DEVICE, /**< on */
+    PS_ACT_WIRE,   /**< on = open */
     PS_ACT_SPI_FLIP,
-    PS_ACT_BUS_DEAD,  /**< on = ff */
+    PS_ACT_BUS_DEAD, /**< on = ff */
     PS_ACT_BUS_FREE,
     PS_ACT_MCU_RESET,
     PS_ACT_WELD
@@ -44,8 +45,8 @@ typedef struct ps_event {
 } ps_event;
 
 typedef enum ps_expect_kind {
-    PS_EXP_STATE,      /**< state at t */
-    PS_EXP_FAULT,      /**< fault (item) within t of t0 */
+    PS_EXP_STATE, /**< state at t */
+    PS_EXP_FAULT, /**< fault (item) within t of t0 */
     PS_EXP_NO_FAULT_BEFORE,
     PS_EXP_NO_FAULTS,
     PS_EXP_DISCOVERED, /**< n devices at t */
@@ -53,7 +54,7 @@ typedef enum ps_expect_kind {
     PS_EXP_SOC,
     PS_EXP_MEASUREMENT,
     PS_EXP_OUTPUTS_OFF, /**< within t of t0 */
-    PS_EXP_RECOVERED,  /**< at t */
+    PS_EXP_RECOVERED,   /**< at t */
     PS_EXP_MISUSE_NONE,
     PS_EXP_SPEED
 } ps_expect_kind;
@@ -65,7 +66,7 @@ typedef struct ps_expect {
     ps_expect_kind kind;
     ps_place at;
     char text[PS_EXPECT_TEXT];
-    int id;        /**< state or fault number, device count */
+    int id; /**< state or fault number, device count */
     ps_item item;
     int n;
     uint64_t t, t0;
@@ -79,7 +80,7 @@ typedef struct ps_scenario {
     sim_cells_load load;
     bool has_load_file;
     bool request_on;
-    bool eprom_fast;   /**< FUNCTION_CONFIG in the EPROM selects 6 us conversions; otherwise blank */
+    bool eprom_fast; /**< FUNCTION_CONFIG in the EPROM selects 6 us conversions; otherwise blank */
     bq_app_config app;
     bq76pl536_config driver;
     bq_ocv_point soc_points[SIM_OCV_POINTS]; /**< the curve as the firmware is told it */
@@ -109,10 +110,12 @@ typedef struct ps_override {
 } ps_override;
 
 /** Interprets all of `ini`. 0, or -1 with the error recorded. */
-int ps_scenario_build(ps_scenario *s, ps_ini *ini, const ps_search *search, const ps_override *override, ps_error *e);
+int ps_scenario_build(ps_scenario *s, ps_ini *ini, const ps_search *search, const ps_override *override,
+                      ps_error *e);
 
 /** One event `key = value`, one expectation line. 0 or -1. */
-int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at, ps_error *e);
+int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at,
+                   ps_error *e);
 int ps_expect_parse(ps_expect *x, const ps_scenario *s, const char *text, ps_place at, ps_error *e);
 
 /** The latest moment an expectation looks at; 0 for those judged at the end. */
@@ -120,7 +123,8 @@ uint64_t ps_expect_deadline(const ps_expect *x);
 
 /** Defaults of a chemistry for the pack controller and the driver; s->devices, cells and period are set. */
 void ps_limits_default(ps_scenario *s, bool lfp);
-/** All of [limits], then checks the whole configuration with the firmware's own validators. 0, or -1 naming the field. */
+/** All of [limits], then checks the whole configuration with the firmware's own validators. 0, or -1 naming
+ * the field. */
 int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e);
 /** Name of key i of [limits] for help; NULL past the end. */
 const char *ps_limit_name(int i);

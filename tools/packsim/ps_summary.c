@@ -54,7 +54,8 @@ static void print_misuse(FILE *to, const sim_misuse *m)
 {
     for (uint32_t i = 0; i < m->count && i < SIM_MISUSE_KEPT; i++) {
         const sim_misuse_entry *x = &m->entry[i];
-        (void)fprintf(to, "misuse: %.6f s device %d %s %s\n", (double)x->time_ns / 1e9, x->device, x->id, x->text);
+        (void)fprintf(to, "misuse: %.6f s device %d %s %s\n", (double)x->time_ns / 1e9, x->device, x->id,
+                      x->text);
     }
 }
 
@@ -75,7 +76,8 @@ bool ps_summary(FILE *to, const ps_run *u, bool quiet)
     print_expects(to, u, quiet);
     print_misuse(to, misuse);
     (void)fprintf(to, "monitor: bq76pl536\ndevices found: %d\ncells: %d\n", u->found, s->cells);
-    (void)fprintf(to, "simulated: %.3f s\nscans: %llu\n", (double)u->simulated / 1e9, (unsigned long long)u->scans);
+    (void)fprintf(to, "simulated: %.3f s\nscans: %llu\n", (double)u->simulated / 1e9,
+                  (unsigned long long)u->scans);
     (void)fprintf(to, "bus bytes per scan: %.1f\n", u->bytes_per_scan);
     (void)fprintf(to, "bus errors: %llu\n", (unsigned long long)ps_rig_bus_errors(u->rig));
     print_or_none(to, "worst measurement error mv", u->totals.measurement_mv, 3);

@@ -46,7 +46,8 @@ bool ps_is(const ps_words *w, int i, const char *text);
 bool ps_number(const char *text, double *value);
 /** A whole number within int. */
 bool ps_int(const char *text, int *value);
-/** A time with its unit (us, ms, s, min, h; a space before the unit is allowed; 0 needs none), rounded to nanoseconds. */
+/** A time with its unit (us, ms, s, min, h; a space before the unit is allowed; 0 needs none), rounded to
+ * nanoseconds. */
 bool ps_time(const char *text, uint64_t *ns);
 /** The same at word *i (and the next, when the unit stands apart); moves *i behind it. */
 bool ps_time_words(const ps_words *w, int *i, uint64_t *ns);

@@ -3,6 +3,7 @@
 # What packsim does with its command line: exit status, the place of errors, table, repeatability.
 # usage: cli.sh PACKSIM WORK_DIRECTORY
 packsim=$1
+scenarios=$(cd "$(dirname "$0")/../../../tools/packsim/scenarios" && pwd)
 rm -rf "$2"
 mkdir -p "$2" && cd "$2" || exit 1
 failures=0
@@ -161,7 +162,7 @@ awk -F, 'END { exit $3 != "4.000" }' e.csv || fail "--current without effect: $(
 grep -q '^\$enddefinitions' w.vcd || fail "no waveform"
 
 "$packsim" --list >out || fail "--list"
-for scenario in "$(dirname "$0")"/../../../tools/packsim/scenarios/*.ini; do
+for scenario in "$scenarios"/*.ini; do
     name=$(basename "$scenario" .ini)
     grep -q "^$name  *[A-Z0-9]" out || fail "$name is not listed with a description"
 done

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every kind of expectation holds when it should and fails when it should: what judges must be able to say no. */
+/* Every kind of expectation holds when it should and fails when it should: what judges must be able to say
+ * no. */
 #include "ps_judge.h"
 #include "unity.h"
 
@@ -81,7 +82,8 @@ static void test_fault_needs_name_place_and_time(void)
     TEST_ASSERT_FALSE(fault_held(text, BQ_FAULT_CELL_UV, 9, 20100));
     TEST_ASSERT_TRUE(fault_held("fault cell_ov within 1 s of 20 s", BQ_FAULT_CELL_OV, 3, 20100));
     TEST_ASSERT_TRUE(fault_held("fault comm_loss device 2 within 1 s of 20 s", BQ_FAULT_COMM_LOSS, 0, 20100));
-    TEST_ASSERT_FALSE(fault_held("fault comm_loss device 1 within 1 s of 20 s", BQ_FAULT_COMM_LOSS, 0, 20100));
+    TEST_ASSERT_FALSE(
+        fault_held("fault comm_loss device 1 within 1 s of 20 s", BQ_FAULT_COMM_LOSS, 0, 20100));
 }
 
 static void test_absence_of_faults(void)

@@ -35,7 +35,8 @@ static void test_times_carry_units(void)
     TEST_ASSERT_EQUAL(10800 * PS_S, t);
     TEST_ASSERT_TRUE(ps_time("0", &t));
     TEST_ASSERT_EQUAL(0, t);
-    static const char *const bad[] = {"", "10", "10 sec", "-1 s", "s", "1 s x", "1e99 h", "nan s", "inf s", "20000 h"};
+    static const char *const bad[] = {"",      "10",     "10 sec", "-1 s",  "s",
+                                      "1 s x", "1e99 h", "nan s",  "inf s", "20000 h"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         TEST_ASSERT_FALSE_MESSAGE(ps_time(bad[i], &t), bad[i]);
     }
@@ -63,7 +64,8 @@ static ps_event event(const char *action)
 {
     ps_event v;
     memset(&error, 0, sizeof error);
-    TEST_ASSERT_EQUAL_MESSAGE(0, ps_event_parse(&v, &scenario, "1 s", action, (ps_place){"f", 3}, &error), action);
+    TEST_ASSERT_EQUAL_MESSAGE(0, ps_event_parse(&v, &scenario, "1 s", action, (ps_place){"f", 3}, &error),
+                              action);
     TEST_ASSERT_EQUAL(PS_S, v.t);
     return v;
 }
@@ -105,16 +107,45 @@ static void test_every_action(void)
 static void test_bad_actions_are_refused_with_their_place(void)
 {
     static const char *const bad[] = {
-        "cell 0 volts 3",   "cell 23 volts 3", "cell 1 volts 6.1", "cell 1 volts x", "cell 1 volts", "cell 1 loose",
-        "sensor 9 celsius 20", "sensor 1 kelvin 300", "sensor 1 celsius 200", "current", "current lots", "current file",
-        "request maybe", "break above 4", "break above 0", "break under 2", "mend 2", "device 5 off", "device 1 gone",
-        "wire 23 open", "wire -1 open", "wire 1 cut", "spi flip 1.5", "spi flop 0.1", "bus dead aa", "bus alive",
-        "mcu halt", "contactor open", "i2c flip 0.1", "afe xready", "afe alert", "explode", "",
+        "cell 0 volts 3",
+        "cell 23 volts 3",
+        "cell 1 volts 6.1",
+        "cell 1 volts x",
+        "cell 1 volts",
+        "cell 1 loose",
+        "sensor 9 celsius 20",
+        "sensor 1 kelvin 300",
+        "sensor 1 celsius 200",
+        "current",
+        "current lots",
+        "current file",
+        "request maybe",
+        "break above 4",
+        "break above 0",
+        "break under 2",
+        "mend 2",
+        "device 5 off",
+        "device 1 gone",
+        "wire 23 open",
+        "wire -1 open",
+        "wire 1 cut",
+        "spi flip 1.5",
+        "spi flop 0.1",
+        "bus dead aa",
+        "bus alive",
+        "mcu halt",
+        "contactor open",
+        "i2c flip 0.1",
+        "afe xready",
+        "afe alert",
+        "explode",
+        "",
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         ps_event v;
         memset(&error, 0, sizeof error);
-        TEST_ASSERT_EQUAL_MESSAGE(-1, ps_event_parse(&v, &scenario, "1 s", bad[i], (ps_place){"f.ini", 3}, &error), bad[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(
+            -1, ps_event_parse(&v, &scenario, "1 s", bad[i], (ps_place){"f.ini", 3}, &error), bad[i]);
         TEST_ASSERT_EQUAL_MESSAGE(0, strncmp(error.text, "f.ini:3: ", 9), error.text);
     }
     ps_event v;
@@ -125,27 +156,52 @@ static void test_bad_actions_are_refused_with_their_place(void)
 static void test_bad_expectations_are_refused_with_their_place(void)
 {
     static const char *const bad[] = {
-        "state on", "state sideways at 1 s", "state on at 1", "state on at 1 s 2", "fault", "fault nothing within 1 s of 2 s",
-        "fault cell_ov cell 23 within 1 s of 2 s", "fault cell_ov cell within 1 s of 2 s", "fault cell_ov within 1 s",
-        "fault cell_ov within 1 s of 2", "no", "no fault", "no fault before", "no worries", "discovered 5 at 1 s",
-        "discovered 4", "spread below 5 at 1 s", "spread below 5 mv", "spread above 5 mv at 1 s", "soc error below 1",
-        "soc error below 1 percent at 1 s", "measurement error below 2", "measurement error below -2 mv", "outputs off",
-        "outputs on within 1 s of 2 s", "recovered", "recovered at", "misuse some", "speed above", "speed above fast",
+        "state on",
+        "state sideways at 1 s",
+        "state on at 1",
+        "state on at 1 s 2",
+        "fault",
+        "fault nothing within 1 s of 2 s",
+        "fault cell_ov cell 23 within 1 s of 2 s",
+        "fault cell_ov cell within 1 s of 2 s",
+        "fault cell_ov within 1 s",
+        "fault cell_ov within 1 s of 2",
+        "no",
+        "no fault",
+        "no fault before",
+        "no worries",
+        "discovered 5 at 1 s",
+        "discovered 4",
+        "spread below 5 at 1 s",
+        "spread below 5 mv",
+        "spread above 5 mv at 1 s",
+        "soc error below 1",
+        "soc error below 1 percent at 1 s",
+        "measurement error below 2",
+        "measurement error below -2 mv",
+        "outputs off",
+        "outputs on within 1 s of 2 s",
+        "recovered",
+        "recovered at",
+        "misuse some",
+        "speed above",
+        "speed above fast",
         "happiness above 3",
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         ps_expect x;
         memset(&error, 0, sizeof error);
-        TEST_ASSERT_EQUAL_MESSAGE(-1, ps_expect_parse(&x, &scenario, bad[i], (ps_place){"f.ini", 7}, &error), bad[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(-1, ps_expect_parse(&x, &scenario, bad[i], (ps_place){"f.ini", 7}, &error),
+                                  bad[i]);
         TEST_ASSERT_EQUAL_MESSAGE(0, strncmp(error.text, "f.ini:7: ", 9), error.text);
     }
 }
 
 static void test_every_fault_and_state_has_its_name(void)
 {
-    static const char *const faults[] = {"cell_ov", "cell_uv", "overtemp", "undertemp", "imbalance", "comm_loss", "chip",
-                                         "chip_cell_ov", "chip_cell_uv", "chip_overtemp", "open_wire", "sensor",
-                                         "self_test", "config"};
+    static const char *const faults[] = {
+        "cell_ov",      "cell_uv",      "overtemp",      "undertemp", "imbalance", "comm_loss", "chip",
+        "chip_cell_ov", "chip_cell_uv", "chip_overtemp", "open_wire", "sensor",    "self_test", "config"};
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         TEST_ASSERT_EQUAL((int)i, ps_fault_number(faults[i]));
     }

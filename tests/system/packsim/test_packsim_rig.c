@@ -19,9 +19,10 @@ typedef struct bench {
 
 static bench *b;
 
-static const char small[] = "[pack]\nmonitor = bq76pl536\ndevices = 3\ncells = 14\nchemistry = nmc\nsoc_percent = 60\n"
-                            "resistance_mohm = 1\ncapacity_ah = 60\n"
-                            "[run]\nduration = 20 s\n[load]\ncurrent_a = -50\nrequest = on\n";
+static const char small[] =
+    "[pack]\nmonitor = bq76pl536\ndevices = 3\ncells = 14\nchemistry = nmc\nsoc_percent = 60\n"
+    "resistance_mohm = 1\ncapacity_ah = 60\n"
+    "[run]\nduration = 20 s\n[load]\ncurrent_a = -50\nrequest = on\n";
 
 static void build_from(const char *path)
 {
@@ -30,7 +31,8 @@ static void build_from(const char *path)
     memset(&nothing, 0, sizeof nothing);
     (void)snprintf(search.data_dir, sizeof search.data_dir, "%s/data", PACKSIM_SOURCE_DIR);
     TEST_ASSERT_EQUAL_MESSAGE(0, ps_ini_read(&b->ini, path, &b->error), b->error.text);
-    TEST_ASSERT_EQUAL_MESSAGE(0, ps_scenario_build(&b->scenario, &b->ini, &search, &nothing, &b->error), b->error.text);
+    TEST_ASSERT_EQUAL_MESSAGE(0, ps_scenario_build(&b->scenario, &b->ini, &search, &nothing, &b->error),
+                              b->error.text);
     TEST_ASSERT_EQUAL_MESSAGE(0, ps_rig_init(&b->rig, &b->scenario, &b->error), b->error.text);
     ps_judge_init(&b->judge, &b->scenario);
     b->run.rig = &b->rig;
@@ -80,7 +82,8 @@ static void test_current_flows_only_through_a_closed_or_welded_contactor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, rest, b->rig.world.volts[0]);
     run_until(10 * PS_S);
     TEST_ASSERT_TRUE(ps_rig_outputs_on(&b->rig));
-    TEST_ASSERT_DOUBLE_WITHIN(0.002, rest - 0.050, b->rig.world.volts[0]); /* 50 A x 1 mOhm and a little charge */
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, rest - 0.050,
+                              b->rig.world.volts[0]); /* 50 A x 1 mOhm and a little charge */
     act((ps_event){.kind = PS_ACT_REQUEST, .on = false});
     run_until(11 * PS_S);
     TEST_ASSERT_FALSE(ps_rig_outputs_on(&b->rig));
@@ -207,7 +210,8 @@ static void test_a_stack_that_never_answers_ends_in_a_fault(void)
     build("[expect]\ndiscovered 3 at 19 s\nstate on at 19 s\noutputs off within 1 ms of 19 s\n");
     sim_pl_bus_fault(&b->rig.pl)->hook = damage_addresses;
     const char *text = summary_of_run();
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "failed: test_packsim_rig.ini:15: discovered 3 at 19 s (0 discovered)"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(text, "failed: test_packsim_rig.ini:15: discovered 3 at 19 s (0 discovered)"), text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "held: outputs off within 1 ms of 19 s"), text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "devices found: 0"), text);
 }

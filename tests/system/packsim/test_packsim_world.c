@@ -45,8 +45,9 @@ static sim_cells_config plain(int modules)
 
 void setUp(void)
 {
-    TEST_ASSERT_EQUAL(0, sim_ocv_load(&ocv, write_file("# source\nsoc_percent,ocv_v\n0,3.0\n50,3.5\n100,4.5\n"), error,
-                                      sizeof error));
+    TEST_ASSERT_EQUAL(0,
+                      sim_ocv_load(&ocv, write_file("# source\nsoc_percent,ocv_v\n0,3.0\n50,3.5\n100,4.5\n"),
+                                   error, sizeof error));
 }
 
 void tearDown(void)
@@ -92,7 +93,8 @@ static void test_charge_is_counted_and_resistance_seen(void)
     sim_cells_config k = plain(1);
     TEST_ASSERT_EQUAL(0, sim_cells_init(&cells, &k));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.5, cells.volts[0]);
-    /* 36 s at 10 A = 0.1 Ah = 1 % of 10 Ah: -0.01 V of curve below 50 %, 10 A x 2 mOhm in the direction of the current */
+    /* 36 s at 10 A = 0.1 Ah = 1 % of 10 Ah: -0.01 V of curve below 50 %, 10 A x 2 mOhm in the direction of
+     * the current */
     for (int i = 0; i < 360; i++) {
         sim_cells_step(&cells, 0.1, -10.0, -10.0);
     }
@@ -203,16 +205,18 @@ static void test_stack_sees_each_cell_at_its_place(void)
 
 static void test_load_is_linear_and_repeats(void)
 {
-    TEST_ASSERT_EQUAL(0, sim_cells_load_file(&load, write_file("time_s,current_a\n10,0\n12,-20\n20,10\n"), error,
-                                             sizeof error));
+    TEST_ASSERT_EQUAL(0, sim_cells_load_file(&load, write_file("time_s,current_a\n10,0\n12,-20\n20,10\n"),
+                                             error, sizeof error));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, sim_cells_load_at(&load, 0.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -10.0, sim_cells_load_at(&load, 1.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -5.0, sim_cells_load_at(&load, 6.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -10.0, sim_cells_load_at(&load, 31.0)); /* 3 turns of 10 s and one second */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -10.0,
+                              sim_cells_load_at(&load, 31.0)); /* 3 turns of 10 s and one second */
     load.use_table = 0;
     load.constant_a = 4.0;
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0, sim_cells_load_at(&load, 31.0));
-    TEST_ASSERT_EQUAL(-1, sim_cells_load_file(&load, write_file("time_s,current_a\n1,0\n1,0\n"), error, sizeof error));
+    TEST_ASSERT_EQUAL(
+        -1, sim_cells_load_file(&load, write_file("time_s,current_a\n1,0\n1,0\n"), error, sizeof error));
     TEST_ASSERT_NOT_NULL(strstr(error, ".csv:3: time does not rise"));
 }
 
