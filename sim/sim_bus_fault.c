@@ -86,7 +86,8 @@ static bool shift_late(int late, uint8_t *rx, uint8_t *driven, size_t bits)
     return true;
 }
 
-/* A write that a fault hit leaves the device other than the host believes: not the host's doing, for a while. */
+/* A write that a fault hit leaves the device other than the host believes: not the host's doing, for a while.
+ */
 static void taint(sim_pl *s, const uint8_t *tx, size_t bits)
 {
     unsigned address = tx[0] >> 1;
@@ -143,7 +144,8 @@ static bool brownout(sim_bus_fault *f, size_t clocked, sim_pl_route *route)
     return true;
 }
 
-static void pass(sim_pl *s, const uint8_t *tx, uint8_t *sent, uint8_t *rx, uint8_t *driven, size_t bits, bool touched)
+static void pass(sim_pl *s, const uint8_t *tx, uint8_t *sent, uint8_t *rx, uint8_t *driven, size_t bits,
+                 bool touched)
 {
     sim_bus_fault *f = &s->fault;
     size_t clocked = (bits + 7) / 8;

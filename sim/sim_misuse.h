@@ -12,8 +12,8 @@
 
 typedef struct sim_misuse_entry {
     uint64_t time_ns;
-    int device;            /**< 1-based; 0 = the bus or no particular device */
-    char id[16];           /**< requirement, for example "PL-ADC-12" */
+    int device;  /**< 1-based; 0 = the bus or no particular device */
+    char id[16]; /**< requirement, for example "PL-ADC-12" */
     char text[80];
 } sim_misuse_entry;
 

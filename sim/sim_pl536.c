@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Life and time of a simulated stack: set-up, the event clock, and what every change in a device ends with. */
+/* Life and time of a simulated stack: set-up, the event clock, and what every change in a device ends with.
+ */
 #include "sim_pl536_internal.h"
 #include <string.h>
 
@@ -49,7 +50,8 @@ static void device_init(sim_pl *s, sim_pl_dev *d)
 static bool usable(const sim_pl_options *o)
 {
     return o == NULL || (o->delay_percent >= -12.0 && o->delay_percent <= 10.0 && o->noise_uv_rms >= 0.0 &&
-                         o->cell_offset_uv_max >= 0.0 && o->wire_drift >= 0.0 && o->wire_drift <= 1.0 && o->reg50_v >= 0.0);
+                         o->cell_offset_uv_max >= 0.0 && o->wire_drift >= 0.0 && o->wire_drift <= 1.0 &&
+                         o->reg50_v >= 0.0);
 }
 
 int sim_pl_init(sim_pl *s, int devices, const sim_pl_options *options)
@@ -80,7 +82,8 @@ static uint8_t status_of(const sim_pl *s, const sim_pl_dev *d)
 
     status |= d->reg[REG_ADDRESS] & ADDR_AR;
     status |= (d->reg[REG_FAULT] & FA_ALL) != 0 ? ST_FAULT : 0u;
-    status |= d->reg[REG_ALERT] != 0 || (s->options.amb48_ecc_alert && (status & ST_ECC_COR) != 0) ? ST_ALERT : 0u;
+    status |=
+        d->reg[REG_ALERT] != 0 || (s->options.amb48_ecc_alert && (status & ST_ECC_COR) != 0) ? ST_ALERT : 0u;
     status |= d->uvlo ? ST_UVLO : 0u;
     status |= d->cb_running ? ST_CBT : 0u;
     status |= d->drdy ? ST_DRDY : 0u;

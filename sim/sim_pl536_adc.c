@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The measuring half: conversion control and results (PL-ADC, PL-CONV, PL-DRDY, PL-VCELL, PL-GPAI, PL-VBAT, PL-TS).
- * All channels are sampled and stored together at the end of the cycle (PL-AMB-71). */
+/* The measuring half: conversion control and results (PL-ADC, PL-CONV, PL-DRDY, PL-VCELL, PL-GPAI, PL-VBAT,
+ * PL-TS). All channels are sampled and stored together at the end of the cycle (PL-AMB-71). */
 #include "sim_pl536_internal.h"
 
 #define WAKE_TIME (500 * SIM_PL_US)
@@ -46,7 +46,8 @@ void sim_pl_adc_abort(sim_pl_dev *d)
 static void judge_start(sim_pl *s, const sim_pl_dev *d, bool by_pin)
 {
     if (d->conv_end != SIM_PL_NEVER) {
-        sim_pl_judge_state(s, d, by_pin ? "PL-CONV-05" : "PL-AMB-67", "conversion started while one is running");
+        sim_pl_judge_state(s, d, by_pin ? "PL-CONV-05" : "PL-AMB-67",
+                           "conversion started while one is running");
     } else if ((d->reg[REG_ADC_CONTROL] & ADC_ON) != 0 && s->now < d->adc_ready) {
         sim_pl_judge_state(s, d, "PL-ADC-18", "conversion started within 500 us of ADC_ON");
     }
@@ -87,7 +88,8 @@ void sim_pl_adc_start(sim_pl *s, sim_pl_dev *d, bool by_pin)
     }
     d->conv_select = d->reg[REG_ADC_CONTROL];
     d->conv_adct = (uint8_t)speed(s, d);
-    d->conv_end = from + wake + sim_pl_scaled(s, (channels(d->conv_select) + 1u) * channel_time(s, d->conv_adct));
+    d->conv_end =
+        from + wake + sim_pl_scaled(s, (channels(d->conv_select) + 1u) * channel_time(s, d->conv_adct));
     d->drdy = false;
 }
 
@@ -97,7 +99,8 @@ void sim_pl_adc_start(sim_pl *s, sim_pl_dev *d, bool by_pin)
 static double noise(sim_pl *s)
 {
     uint64_t r = sim_pl_random(&s->rng);
-    double sum = (double)(r & 0xffff) + (double)((r >> 16) & 0xffff) + (double)((r >> 32) & 0xffff) + (double)(r >> 48);
+    double sum = (double)(r & 0xffff) + (double)((r >> 16) & 0xffff) + (double)((r >> 32) & 0xffff) +
+                 (double)(r >> 48);
 
     return (sum / 65536.0 - 2.0) * 1.7320508075688772;
 }

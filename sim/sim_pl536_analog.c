@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * What the cell inputs see. With all sense wires whole, input n sees cell n. An open wire leaves its node to leakage and to
- * the balancing switches; ADC and comparators see the result alike, and the BAT pin keeps its own wire (PL-VBAT-02).
+ * What the cell inputs see. With all sense wires whole, input n sees cell n. An open wire leaves its node to
+ * leakage and to the balancing switches; ADC and comparators see the result alike, and the BAT pin keeps its
+ * own wire (PL-VBAT-02).
  *
- * - Open inner wire k (1..5), balancing off: the node drifts toward the next lower one by the fraction `wire_drift` (0.5) of
- *   cell k. Cell k reads low, cell k + 1 high by the same amount, the sum is true (PL-SEQ-14-03). With 0.5 both readings of
- *   ordinary cells stay inside the converter's range, so that the rule can be seen in the codes.
- * - With a balancing output beside the open node on, its cell reads 0 and the neighbour takes both voltages (PL-SEQ-14-04);
- *   with both on they share equally.
- * - Several open wires in a row: each cell but the highest keeps (1 - drift) of its voltage, the highest takes the rest;
- *   cells with their output on read 0 and the others share in proportion.
- * - Open VC6 or VC0: no neighbour takes up the difference. Cell 6 (cell 1) reads (1 - drift) of its voltage, 0 with its
- *   output on, and the sum falls below VBAT (PL-SEQ-14-02).
- * - Option wire_field_pattern, as seen on hardware: the cell below an open inner wire (cell 1 for VC0, cell 6 for VC6) reads
- *   0, the one above it a fifth of that voltage too much: the sum is too low by less than one cell.
+ * - Open inner wire k (1..5), balancing off: the node drifts toward the next lower one by the fraction
+ * `wire_drift` (0.5) of cell k. Cell k reads low, cell k + 1 high by the same amount, the sum is true
+ * (PL-SEQ-14-03). With 0.5 both readings of ordinary cells stay inside the converter's range, so that the
+ * rule can be seen in the codes.
+ * - With a balancing output beside the open node on, its cell reads 0 and the neighbour takes both voltages
+ * (PL-SEQ-14-04); with both on they share equally.
+ * - Several open wires in a row: each cell but the highest keeps (1 - drift) of its voltage, the highest
+ * takes the rest; cells with their output on read 0 and the others share in proportion.
+ * - Open VC6 or VC0: no neighbour takes up the difference. Cell 6 (cell 1) reads (1 - drift) of its voltage,
+ * 0 with its output on, and the sum falls below VBAT (PL-SEQ-14-02).
+ * - Option wire_field_pattern, as seen on hardware: the cell below an open inner wire (cell 1 for VC0, cell 6
+ * for VC6) reads 0, the one above it a fifth of that voltage too much: the sum is too low by less than one
+ * cell.
  */
 #include "sim_pl536_internal.h"
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Group 3: load from EPROM with error correction, parity of the RAM copy, and the one programming run (PL-G3, PL-ECC,
- * PL-OTP). The ECC is kept as the set of bits that no longer hold what was programmed: one is corrected, more are detected. */
+/* Group 3: load from EPROM with error correction, parity of the RAM copy, and the one programming run (PL-G3,
+ * PL-ECC, PL-OTP). The ECC is kept as the set of bits that no longer hold what was programmed: one is
+ * corrected, more are detected. */
 #include "sim_pl536_internal.h"
 #include <string.h>
 
@@ -18,7 +19,8 @@ static unsigned ones(unsigned x)
     return n;
 }
 
-/* ---- parity --------------------------------------------------------------------------------------------------- */
+/* ---- parity
+ * --------------------------------------------------------------------------------------------------- */
 
 static void show_parity(sim_pl_dev *d)
 {
@@ -48,7 +50,8 @@ void sim_pl_parity_check(sim_pl_dev *d)
     }
 }
 
-/* ---- load ------------------------------------------------------------------------------------------------------ */
+/* ---- load
+ * ------------------------------------------------------------------------------------------------------ */
 
 void sim_pl_eprom_load(sim_pl *s, sim_pl_dev *d)
 {
@@ -64,7 +67,8 @@ void sim_pl_eprom_load(sim_pl *s, sim_pl_dev *d)
         d->reg[REG_FUNCTION + i] = value & sim_pl_reg_keep(s, r);
         sim_pl_parity_store(d, i);
     }
-    d->reg[REG_STATUS] = (uint8_t)((d->reg[REG_STATUS] & ~(unsigned)ST_ECC_COR) | (corrected ? ST_ECC_COR : 0u));
+    d->reg[REG_STATUS] =
+        (uint8_t)((d->reg[REG_STATUS] & ~(unsigned)ST_ECC_COR) | (corrected ? ST_ECC_COR : 0u));
     if (lost) {
         sim_pl_alert_set(d, AL_ECC_ERR);
         sim_pl_fault_set(d, s->options.amb49_no_ifault ? 0 : FA_I_FAULT);
@@ -72,7 +76,8 @@ void sim_pl_eprom_load(sim_pl *s, sim_pl_dev *d)
     sim_pl_protect_config(s, d);
 }
 
-/* ---- programming ------------------------------------------------------------------------------------------------ */
+/* ---- programming
+ * ------------------------------------------------------------------------------------------------ */
 
 void sim_pl_do_e_en(sim_pl *s, sim_pl_dev *d, uint8_t value)
 {
@@ -113,11 +118,13 @@ void sim_pl_eprom_due(sim_pl *s, sim_pl_dev *d)
     }
     if (d->vpp_limit <= s->now) {
         d->vpp_limit = SIM_PL_NEVER;
-        sim_misuse_add(&s->misuse, s->now, sim_pl_number(s, d), "PL-AMB-105", "programming voltage applied for more than 50 ms");
+        sim_misuse_add(&s->misuse, s->now, sim_pl_number(s, d), "PL-AMB-105",
+                       "programming voltage applied for more than 50 ms");
     }
 }
 
-/* ---- world ------------------------------------------------------------------------------------------------------- */
+/* ---- world
+ * ------------------------------------------------------------------------------------------------------- */
 
 static sim_pl_dev *device_at(sim_pl *s, int device)
 {

@@ -43,50 +43,51 @@ enum {
 };
 
 enum { /* DEVICE_STATUS */
-    ST_AR = 0x80,
-    ST_FAULT = 0x40,
-    ST_ALERT = 0x20,
-    ST_ECC_COR = 0x08,
-    ST_UVLO = 0x04,
-    ST_CBT = 0x02,
-    ST_DRDY = 0x01
+       ST_AR = 0x80,
+       ST_FAULT = 0x40,
+       ST_ALERT = 0x20,
+       ST_ECC_COR = 0x08,
+       ST_UVLO = 0x04,
+       ST_CBT = 0x02,
+       ST_DRDY = 0x01
 };
 
 enum { /* ALERT_STATUS */
-    AL_AR = 0x80,
-    AL_PARITY = 0x40,
-    AL_ECC_ERR = 0x20,
-    AL_FORCE = 0x10,
-    AL_TSD = 0x08,
-    AL_SLEEP = 0x04,
-    AL_OT = 0x03
+       AL_AR = 0x80,
+       AL_PARITY = 0x40,
+       AL_ECC_ERR = 0x20,
+       AL_FORCE = 0x10,
+       AL_TSD = 0x08,
+       AL_SLEEP = 0x04,
+       AL_OT = 0x03
 };
 
 enum { /* FAULT_STATUS */
-    FA_I_FAULT = 0x20,
-    FA_FORCE = 0x10,
-    FA_POR = 0x08,
-    FA_CRC = 0x04,
-    FA_CUV = 0x02,
-    FA_COV = 0x01,
-    FA_ALL = 0x3f
+       FA_I_FAULT = 0x20,
+       FA_FORCE = 0x10,
+       FA_POR = 0x08,
+       FA_CRC = 0x04,
+       FA_CUV = 0x02,
+       FA_COV = 0x01,
+       FA_ALL = 0x3f
 };
 
-enum { /* ADC_CONTROL, IO_CONTROL, ADDRESS_CONTROL, FUNCTION_CONFIG, IO_CONFIG, and the protection registers */
-    ADC_ON = 0x40,
-    IO_AUX = 0x80,
-    IO_GPIO_OUT = 0x40,
-    IO_GPIO_IN = 0x20,
-    IO_SLEEP = 0x04,
-    IO_TS = 0x03,
-    ADDR_AR = 0x80,
-    ADDR_MASK = 0x3f,
-    ADDR_BROADCAST = 0x3f,
-    FN_GPAI_REF = 0x20,
-    FN_GPAI_SRC = 0x10,
-    IOC_CRC_DIS = 0x01,
-    IOC_CRCNOFLT = 0x80,
-    PROT_DISABLE = 0x80
+enum { /* ADC_CONTROL, IO_CONTROL, ADDRESS_CONTROL, FUNCTION_CONFIG, IO_CONFIG, and the protection registers
+        */
+       ADC_ON = 0x40,
+       IO_AUX = 0x80,
+       IO_GPIO_OUT = 0x40,
+       IO_GPIO_IN = 0x20,
+       IO_SLEEP = 0x04,
+       IO_TS = 0x03,
+       ADDR_AR = 0x80,
+       ADDR_MASK = 0x3f,
+       ADDR_BROADCAST = 0x3f,
+       FN_GPAI_REF = 0x20,
+       FN_GPAI_SRC = 0x10,
+       IOC_CRC_DIS = 0x01,
+       IOC_CRCNOFLT = 0x80,
+       PROT_DISABLE = 0x80
 };
 
 /** Comparisons of volts, ratios and degrees treat differences below this as equality. */
@@ -98,12 +99,13 @@ typedef enum sim_pl_access { SIM_PL_RESERVED, SIM_PL_R, SIM_PL_RW, SIM_PL_W } si
 
 typedef struct sim_pl_reg {
     uint8_t address, group;
-    uint8_t access;   /**< sim_pl_access */
-    uint8_t keep;     /**< bits that can keep a written 1 (PL-REG-50) */
-    uint8_t legal;    /**< bits a host may write as 1 */
-    uint8_t reset;    /**< after POR or RESET; group 3: blank EPROM */
-    void (*effect)(sim_pl *s, sim_pl_dev *d, uint8_t value); /**< what a write does beyond storing; NULL = stored under `keep` */
-    const char *id;   /**< the row that describes it */
+    uint8_t access; /**< sim_pl_access */
+    uint8_t keep;   /**< bits that can keep a written 1 (PL-REG-50) */
+    uint8_t legal;  /**< bits a host may write as 1 */
+    uint8_t reset;  /**< after POR or RESET; group 3: blank EPROM */
+    void (*effect)(sim_pl *s, sim_pl_dev *d,
+                   uint8_t value); /**< what a write does beyond storing; NULL = stored under `keep` */
+    const char *id;                /**< the row that describes it */
     const char *name;
 } sim_pl_reg;
 
@@ -203,14 +205,17 @@ typedef struct sim_pl_route {
     int cut_device;   /**< this device and all above it vanish ... */
     size_t cut_bytes; /**< ... after this many bytes */
 } sim_pl_route;
-void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits, const sim_pl_route *route);
+void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits,
+                   const sim_pl_route *route);
 void sim_pl_reach(sim_pl *s);
 
 /* sim_bus_fault.c */
 static inline bool sim_bus_fault_idle(const sim_bus_fault *f)
 {
-    return (f->flip_mosi_bit | f->flip_miso_bit | f->dead | f->late_bits | f->stuck_mosi | f->stuck_miso | f->wrong_device) == 0 &&
-           (f->drop_packets | f->short_packets | f->brownout_bytes) == 0 && f->hook == NULL && !(f->flip_probability > 0.0);
+    return (f->flip_mosi_bit | f->flip_miso_bit | f->dead | f->late_bits | f->stuck_mosi | f->stuck_miso |
+            f->wrong_device) == 0 &&
+           (f->drop_packets | f->short_packets | f->brownout_bytes) == 0 && f->hook == NULL &&
+           !(f->flip_probability > 0.0);
 }
 void sim_pl_faulty_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The judge: what a host does that the datasheet forbids. Packets touched by an injected fault are not judged, nor is what
- * they leave behind in a device until the host had time to notice. */
+/* The judge: what a host does that the datasheet forbids. Packets touched by an injected fault are not
+ * judged, nor is what they leave behind in a device until the host had time to notice. */
 #include "sim_pl536_internal.h"
 
 #define GRACE (SIM_PL_S)
@@ -19,7 +19,8 @@ void sim_pl_judge_state(sim_pl *s, const sim_pl_dev *d, const char *id, const ch
     }
 }
 
-/* ---- packets as the host meant them ------------------------------------------------------------------------- */
+/* ---- packets as the host meant them
+ * ------------------------------------------------------------------------- */
 
 static uint64_t addresses_of(uint8_t first)
 {
@@ -99,7 +100,8 @@ void sim_pl_judge_timing(sim_pl *s, const sim_pl_spi_timing *t)
     }
 }
 
-/* ---- reads ------------------------------------------------------------------------------------------------------- */
+/* ---- reads
+ * ------------------------------------------------------------------------------------------------------- */
 
 void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t length, size_t bits)
 {
@@ -119,7 +121,8 @@ void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t le
     }
 }
 
-/* ---- writes ------------------------------------------------------------------------------------------------------- */
+/* ---- writes
+ * ------------------------------------------------------------------------------------------------------- */
 
 static void judge_access(sim_pl *s, const sim_pl_dev *d, const sim_pl_reg *r, uint8_t value)
 {
@@ -130,7 +133,8 @@ static void judge_access(sim_pl *s, const sim_pl_dev *d, const sim_pl_reg *r, ui
     } else if ((value & ~(unsigned)sim_pl_reg_legal(s, r)) != 0) {
         bool pin = r->address == REG_IO_CONTROL && (value & 0x38) == IO_GPIO_IN;
 
-        sim_pl_judge(s, d, pin ? "PL-GPIO-06" : "PL-REG-02", pin ? "read-only bit GPIO_IN written as 1" : "reserved bit written as 1");
+        sim_pl_judge(s, d, pin ? "PL-GPIO-06" : "PL-REG-02",
+                     pin ? "read-only bit GPIO_IN written as 1" : "reserved bit written as 1");
     }
 }
 
@@ -148,7 +152,8 @@ static void judge_address(sim_pl *s, const sim_pl_dev *d, uint8_t value, bool br
     for (int i = 0; i < s->devices && !broadcast; i++) {
         const sim_pl_dev *other = &s->dev[i];
 
-        if (other != d && sim_pl_is_on(other) && sim_pl_address(other) == address && other->address_generation == s->generation) {
+        if (other != d && sim_pl_is_on(other) && sim_pl_address(other) == address &&
+            other->address_generation == s->generation) {
             sim_pl_judge(s, d, "PL-ADR-15", "address already given to another device");
         }
     }
@@ -166,19 +171,22 @@ static void judge_command(sim_pl *s, const sim_pl_dev *d, uint8_t reg, uint8_t v
         bool fatal = d == &s->dev[0] && value == 0x25 && d->test_step;
 
         sim_pl_judge(s, d, fatal ? "PL-TEST-04" : "PL-TEST-03",
-                     fatal ? "TEST mode entered on the base device: no SPI until power-on reset" : "TEST_SELECT written");
+                     fatal ? "TEST mode entered on the base device: no SPI until power-on reset"
+                           : "TEST_SELECT written");
     }
 }
 
 static void judge_group2(sim_pl *s, const sim_pl_dev *d, uint8_t reg, uint8_t value)
 {
-    if ((reg == REG_ALERT || reg == REG_FAULT) && (value & AL_FORCE) != 0 && (value & ~(unsigned)AL_FORCE) != 0) {
+    if ((reg == REG_ALERT || reg == REG_FAULT) && (value & AL_FORCE) != 0 &&
+        (value & ~(unsigned)AL_FORCE) != 0) {
         sim_pl_judge(s, d, "PL-FLT-14", "FORCE set by a clearing mask");
     } else if (reg == REG_ADC_CONTROL && d->conv_end != SIM_PL_NEVER) {
         sim_pl_judge_state(s, d, "PL-CONV-14", "ADC_CONTROL written during a conversion");
     } else if (reg == REG_CB_TIME && d->cb_running && value != d->reg[REG_CB_TIME]) {
         sim_pl_judge_state(s, d, "PL-AMB-85", "CB_TIME changed while balancing");
-    } else if (reg == REG_IO_CONTROL && (value & ~(unsigned)d->reg[REG_IO_CONTROL] & IO_SLEEP) != 0 && d->cb_running) {
+    } else if (reg == REG_IO_CONTROL && (value & ~(unsigned)d->reg[REG_IO_CONTROL] & IO_SLEEP) != 0 &&
+               d->cb_running) {
         sim_pl_judge_state(s, d, "PL-AMB-86", "SLEEP entered while balancing");
     }
 }

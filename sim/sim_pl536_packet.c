@@ -3,7 +3,8 @@
 #include "sim_pl536_internal.h"
 #include <string.h>
 
-/* Chip select climbs while devices are on, hold a valid address and their links are whole (PL-VB-02, PL-VB-06). */
+/* Chip select climbs while devices are on, hold a valid address and their links are whole (PL-VB-02,
+ * PL-VB-06). */
 void sim_pl_reach(sim_pl *s)
 {
     memset(s->by_address, 0, sizeof s->by_address);
@@ -28,7 +29,8 @@ void sim_pl_reach(sim_pl *s)
     }
 }
 
-/* ---- reads ------------------------------------------------------------------------------------------------- */
+/* ---- reads
+ * ------------------------------------------------------------------------------------------------- */
 
 typedef struct packet {
     const uint8_t *tx;
@@ -70,7 +72,8 @@ static bool answer_fast(const sim_pl_dev *d, const packet *p, bool with_crc)
     size_t length = p->tx[2];
     unsigned first = p->tx[1];
 
-    if (p->route != NULL || first + length > SIM_PL_REGS || p->bits != 8 * (3 + length + (with_crc ? 1u : 0u))) {
+    if (p->route != NULL || first + length > SIM_PL_REGS ||
+        p->bits != 8 * (3 + length + (with_crc ? 1u : 0u))) {
         return false;
     }
     memcpy(p->rx + 3, d->reg + first, length);
@@ -114,7 +117,8 @@ static void read_from(sim_pl *s, sim_pl_dev *d, const packet *p, bool alone)
     }
 }
 
-/* Rare: two devices with one address, both of the present discovery (stale ones are what discovery is there to cure). */
+/* Rare: two devices with one address, both of the present discovery (stale ones are what discovery is there
+ * to cure). */
 static void read_duplicates(sim_pl *s, unsigned address, const packet *p)
 {
     uint8_t driven[SIM_PL_PACKET_MAX];
@@ -156,7 +160,8 @@ static void carry_read(sim_pl *s, const packet *p)
     }
 }
 
-/* ---- writes ------------------------------------------------------------------------------------------------- */
+/* ---- writes
+ * ------------------------------------------------------------------------------------------------- */
 
 static void crc_error(sim_pl *s, sim_pl_dev *d)
 {
@@ -195,7 +200,8 @@ static bool executes(const sim_pl *s, const sim_pl_dev *d, const packet *p)
 {
     unsigned address = p->tx[0] >> 1;
 
-    if (address == ADDR_BROADCAST && s->options.amb18_addressed_only && (d->reg[REG_ADDRESS] & ADDR_AR) == 0) {
+    if (address == ADDR_BROADCAST && s->options.amb18_addressed_only &&
+        (d->reg[REG_ADDRESS] & ADDR_AR) == 0) {
         return p->bytes >= 2 && p->tx[1] == REG_RESET;
     }
     return address == ADDR_BROADCAST || sim_pl_address(d) == address;
@@ -230,9 +236,11 @@ static void carry_write(sim_pl *s, const packet *p)
     sim_pl_chain_settle(s);
 }
 
-/* ---- entrance ------------------------------------------------------------------------------------------------ */
+/* ---- entrance
+ * ------------------------------------------------------------------------------------------------ */
 
-void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits, const sim_pl_route *route)
+void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits,
+                   const sim_pl_route *route)
 {
     size_t clocked = (bits + 7) / 8;
     packet p = {tx, rx, driven, bits, bits / 8, route};
@@ -283,7 +291,8 @@ void sim_pl_spi(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size
     carry(s, tx, rx, driven, 8 * n);
 }
 
-void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n, const sim_pl_spi_timing *timing)
+void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n,
+                      const sim_pl_spi_timing *timing)
 {
     s->spi_hz = timing->clock_hz != 0 ? timing->clock_hz : s->spi_hz;
     sim_pl_judge_timing(s, timing);

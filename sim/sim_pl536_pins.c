@@ -21,7 +21,8 @@ static bool own_alert(const sim_pl *s, const sim_pl_dev *d)
     if (d->asleep || d->tsd) {
         return (d->reg[REG_ALERT] & AL_SLEEP) != 0;
     }
-    return (d->reg[REG_STATUS] & ST_ALERT) != 0 || (s->options.amb01_crc_alert && (d->reg[REG_FAULT] & FA_CRC) != 0);
+    return (d->reg[REG_STATUS] & ST_ALERT) != 0 ||
+           (s->options.amb01_crc_alert && (d->reg[REG_FAULT] & FA_CRC) != 0);
 }
 
 /* True while what comes from above device index i gets through it. */
@@ -69,7 +70,8 @@ bool sim_pl_drdy_pin(const sim_pl *s)
     return true;
 }
 
-/* ---- waveform ------------------------------------------------------------------------------------------------ */
+/* ---- waveform
+ * ------------------------------------------------------------------------------------------------ */
 
 void sim_pl_record(sim_pl *s, struct sim_vcd *vcd)
 {
@@ -115,8 +117,9 @@ static int bit_at(const uint8_t *bytes, size_t bit)
     return bytes[bit / 8] >> (7 - bit % 8) & 1;
 }
 
-/* Mode 1: both sides change data on the rising edge and sample on the falling one (PL-SPI-01). The packet takes its time in
- * the waveform only; packets that would overlap follow each other with 3 us between them. */
+/* Mode 1: both sides change data on the rising edge and sample on the falling one (PL-SPI-01). The packet
+ * takes its time in the waveform only; packets that would overlap follow each other with 3 us between them.
+ */
 void sim_pl_record_packet(sim_pl *s, const uint8_t *tx, const uint8_t *rx, size_t bits)
 {
     uint64_t half = 500000000ull / s->spi_hz;

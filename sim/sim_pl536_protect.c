@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The protecting half: comparators, delays, latches, FAULT_STATUS and ALERT_STATUS (PL-COV, PL-CUV, PL-OT, PL-FLT,
- * PL-ALT). It knows nothing of the ADC (PL-GEN-02). */
+/* The protecting half: comparators, delays, latches, FAULT_STATUS and ALERT_STATUS (PL-COV, PL-CUV, PL-OT,
+ * PL-FLT, PL-ALT). It knows nothing of the ADC (PL-GEN-02). */
 #include "sim_pl536_internal.h"
 
 /* Table 1: ratio at which a code sets and clears (PL-NUM-17..27). */
-static const double ot_set[12] = {0.0, 0.2000, 0.2244, 0.2488, 0.2712, 0.2956, 0.3156, 0.3356, 0.3556, 0.3712, 0.3866, 0.4000};
-static const double ot_clear[12] = {0.0, 0.1766, 0.2000, 0.2270, 0.2498, 0.2750, 0.2956, 0.3162, 0.3368, 0.3528, 0.3688, 0.3824};
+static const double ot_set[12] = {0.0,    0.2000, 0.2244, 0.2488, 0.2712, 0.2956,
+                                  0.3156, 0.3356, 0.3556, 0.3712, 0.3866, 0.4000};
+static const double ot_clear[12] = {0.0,    0.1766, 0.2000, 0.2270, 0.2498, 0.2750,
+                                    0.2956, 0.3162, 0.3368, 0.3528, 0.3688, 0.3824};
 
-/* ---- delays ----------------------------------------------------------------------------------------------- */
+/* ---- delays -----------------------------------------------------------------------------------------------
+ */
 
 static void guard_stop(sim_pl_guard *g, unsigned inputs)
 {
@@ -29,8 +32,8 @@ static void guard_start(const sim_pl *s, sim_pl_guard *g, unsigned inputs)
     g->pending |= (uint8_t)inputs;
 }
 
-/* The comparators moved. `held`: inputs that may not be reported now (PL-AMB-33); `sticky`: PL-AMB-40. Returns true if the
- * flag rises. */
+/* The comparators moved. `held`: inputs that may not be reported now (PL-AMB-33); `sticky`: PL-AMB-40.
+ * Returns true if the flag rises. */
 static bool guard_move(const sim_pl *s, sim_pl_guard *g, unsigned active, unsigned held, bool sticky)
 {
     unsigned rose = active & ~(unsigned)g->active;
@@ -93,7 +96,8 @@ static unsigned inputs_of(unsigned bits, unsigned flag)
     return (bits & flag) != 0 ? 0x3fu : 0u;
 }
 
-/* ---- comparators -------------------------------------------------------------------------------------------- */
+/* ---- comparators
+ * -------------------------------------------------------------------------------------------- */
 
 static bool watching(const sim_pl_dev *d)
 {
@@ -105,7 +109,9 @@ static unsigned over(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 6; i++) {
-        active |= (unsigned)(d->seen[i] > (((unsigned)d->cov.active >> i & 1u) != 0 ? d->cov.hold : d->cov.trip)) << i;
+        active |=
+            (unsigned)(d->seen[i] > (((unsigned)d->cov.active >> i & 1u) != 0 ? d->cov.hold : d->cov.trip))
+            << i;
     }
     return active & d->cov.enabled;
 }
@@ -115,7 +121,9 @@ static unsigned under(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 6; i++) {
-        active |= (unsigned)(d->seen[i] < (((unsigned)d->cuv.active >> i & 1u) != 0 ? d->cuv.hold : d->cuv.trip)) << i;
+        active |=
+            (unsigned)(d->seen[i] < (((unsigned)d->cuv.active >> i & 1u) != 0 ? d->cuv.hold : d->cuv.trip))
+            << i;
     }
     return active & d->cuv.enabled;
 }
@@ -125,7 +133,9 @@ static unsigned hot(const sim_pl_dev *d)
     unsigned active = 0;
 
     for (unsigned i = 0; i < 2; i++) {
-        active |= (unsigned)(d->ts[i] > (((unsigned)d->ot.active >> i & 1u) != 0 ? d->ot_hold[i] : d->ot_trip[i])) << i;
+        active |=
+            (unsigned)(d->ts[i] > (((unsigned)d->ot.active >> i & 1u) != 0 ? d->ot_hold[i] : d->ot_trip[i]))
+            << i;
     }
     return active & d->ot.enabled;
 }
@@ -190,8 +200,8 @@ void sim_pl_protect_off(sim_pl_dev *d)
     d->cov.active = d->cuv.active = d->ot.active = 0;
 }
 
-/* SLEEP keeps FAULT_STATUS and ALERT_STATUS (PL-SLEEP-02), but COV_FAULT and CUV_FAULT without a latch show comparators that
- * are off. */
+/* SLEEP keeps FAULT_STATUS and ALERT_STATUS (PL-SLEEP-02), but COV_FAULT and CUV_FAULT without a latch show
+ * comparators that are off. */
 void sim_pl_protect_rest(sim_pl_dev *d)
 {
     sim_pl_protect_off(d);
@@ -203,7 +213,8 @@ void sim_pl_protect_rest(sim_pl_dev *d)
     }
 }
 
-/* ---- configuration -------------------------------------------------------------------------------------------- */
+/* ---- configuration
+ * -------------------------------------------------------------------------------------------- */
 
 static uint64_t delay(const sim_pl *s, uint64_t ns)
 {
@@ -239,8 +250,8 @@ static unsigned limit(unsigned code, unsigned last)
     return code > last ? last : code;
 }
 
-/* The registers that rule the comparators may have changed (PL-AMB-46). Levels are quotients of whole millivolts, so that a
- * cell set to the printed threshold compares equal. */
+/* The registers that rule the comparators may have changed (PL-AMB-46). Levels are quotients of whole
+ * millivolts, so that a cell set to the printed threshold compares equal. */
 void sim_pl_protect_config(sim_pl *s, sim_pl_dev *d)
 {
     uint8_t cells = (uint8_t)(0x3fu >> ((unsigned)d->reg[REG_FUNCTION] >> 2 & 3u));
@@ -260,7 +271,8 @@ void sim_pl_protect_config(sim_pl *s, sim_pl_dev *d)
     sim_pl_protect_check(s, d);
 }
 
-/* ---- flags ------------------------------------------------------------------------------------------------------ */
+/* ---- flags
+ * ------------------------------------------------------------------------------------------------------ */
 
 void sim_pl_alert_set(sim_pl_dev *d, uint8_t bits)
 {

@@ -2,7 +2,8 @@
 /* The register table, written from PL-REG-07..50. */
 #include "sim_pl536_internal.h"
 
-/* address, group, access, keep, legal, reset, effect, row, name. Bits outside `legal` are reserved or read only. */
+/* address, group, access, keep, legal, reset, effect, row, name. Bits outside `legal` are reserved or read
+ * only. */
 static const sim_pl_reg table[] = {
     {0x00, 1, SIM_PL_R, 0x00, 0x00, 0x00, NULL, "PL-REG-07", "DEVICE_STATUS"},
     {0x01, 1, SIM_PL_R, 0x00, 0x00, 0x00, NULL, "PL-REG-08", "GPAI high"},
@@ -88,5 +89,7 @@ uint8_t sim_pl_reg_keep(const sim_pl *s, const sim_pl_reg *r)
 
 uint8_t sim_pl_reg_legal(const sim_pl *s, const sim_pl_reg *r)
 {
-    return s->options.variant_a && (r->address == REG_FUNCTION || r->address == REG_IO_CONFIG) ? sim_pl_reg_keep(s, r) : r->legal;
+    return s->options.variant_a && (r->address == REG_FUNCTION || r->address == REG_IO_CONFIG)
+               ? sim_pl_reg_keep(s, r)
+               : r->legal;
 }

@@ -22,8 +22,8 @@ static void cells_changed(sim_pl *s, sim_pl_dev *d)
     } else {
         memcpy(d->seen, d->cell, sizeof d->seen);
     }
-    if (d->vbat < 0.0 && (d->uvlo || d->power != SIM_PL_POWER_ON || d->uvlo_at != SIM_PL_NEVER || d->por_at != SIM_PL_NEVER ||
-                          sim_pl_brick(d) < 5.31)) {
+    if (d->vbat < 0.0 && (d->uvlo || d->power != SIM_PL_POWER_ON || d->uvlo_at != SIM_PL_NEVER ||
+                          d->por_at != SIM_PL_NEVER || sim_pl_brick(d) < 5.31)) {
         sim_pl_power_update(s, d);
         sim_pl_chain_settle(s);
         sim_pl_pins_record(s);

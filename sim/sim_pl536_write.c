@@ -2,7 +2,8 @@
 /* What a write that was accepted does (PL-REG, PL-CB, PL-G3, PL-ADR, PL-TEST). */
 #include "sim_pl536_internal.h"
 
-/* ---- balancing ------------------------------------------------------------------------------------------ */
+/* ---- balancing ------------------------------------------------------------------------------------------
+ */
 
 /* Outputs of a device with an open sense wire change what its inputs see. */
 static void outputs_changed(sim_pl *s, sim_pl_dev *d)
@@ -68,7 +69,8 @@ void sim_pl_do_cb_time(sim_pl *s, sim_pl_dev *d, uint8_t value)
     }
 }
 
-/* ---- group 2 ------------------------------------------------------------------------------------------------ */
+/* ---- group 2
+ * ------------------------------------------------------------------------------------------------ */
 
 void sim_pl_do_adc_control(sim_pl *s, sim_pl_dev *d, uint8_t value)
 {
@@ -153,7 +155,8 @@ void sim_pl_do_reset(sim_pl *s, sim_pl_dev *d, uint8_t value)
     }
 }
 
-/* Called after sim_pl_write() voided a sequence that was interrupted: test_step tells that 0xa4 came directly before. */
+/* Called after sim_pl_write() voided a sequence that was interrupted: test_step tells that 0xa4 came directly
+ * before. */
 void sim_pl_do_test(sim_pl *s, sim_pl_dev *d, uint8_t value)
 {
     d->reg[REG_TEST_SELECT] = value;
@@ -166,7 +169,8 @@ void sim_pl_do_test(sim_pl *s, sim_pl_dev *d, uint8_t value)
     s->reach_valid = false;
 }
 
-/* ---- group 3 ------------------------------------------------------------------------------------------------ */
+/* ---- group 3
+ * ------------------------------------------------------------------------------------------------ */
 
 static void write_group3(sim_pl *s, sim_pl_dev *d, const sim_pl_reg *r, uint8_t value)
 {
@@ -178,7 +182,8 @@ static void write_group3(sim_pl *s, sim_pl_dev *d, const sim_pl_reg *r, uint8_t 
     sim_pl_protect_config(s, d);
 }
 
-/* ---- entrance ----------------------------------------------------------------------------------------------- */
+/* ---- entrance
+ * ----------------------------------------------------------------------------------------------- */
 
 void sim_pl_write(sim_pl *s, sim_pl_dev *d, uint8_t reg, uint8_t value, bool broadcast)
 {

@@ -22,7 +22,8 @@ typedef struct sim_vcd {
 
 /** Opens `path`. Returns 0, or -1 with errno set. */
 int sim_vcd_open(sim_vcd *v, const char *path);
-/** Adds a one-bit signal before the first change; returns its number, or that of a signal which has this name already; -1 when full. */
+/** Adds a one-bit signal before the first change; returns its number, or that of a signal which has this name
+ * already; -1 when full. */
 int sim_vcd_signal(sim_vcd *v, const char *name, int initial);
 /** Records a change; times that run backwards are recorded at the latest time seen. */
 void sim_vcd_set(sim_vcd *v, int signal, uint64_t time_ns, int value);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every option of the bq76PL536 model, seen from the bus in both positions; the misuse book; waveform files that fail. */
+/* Every option of the bq76PL536 model, seen from the bus in both positions; the misuse book; waveform files
+ * that fail. */
 #include "sim_pl536.h"
 #include "sim_vcd.h"
 #include "unity.h"
@@ -283,7 +284,10 @@ static int wire_codes(void)
     return (reg(1, 0x07) << 8 | reg(1, 0x08)) << 16 | reg(1, 0x09) << 8 | reg(1, 0x0a);
 }
 
-#define OPTION(member, value) {.member = value}
+#define OPTION(member, value)                                                                                \
+    {                                                                                                        \
+        .member = value                                                                                      \
+    }
 
 static void test_each_option_changes_what_it_names(void)
 {
@@ -363,8 +367,8 @@ static void test_noise_is_seeded_and_has_the_size_asked_for(void)
 
 static void test_bad_arguments_are_refused(void)
 {
-    static const sim_pl_options bad[] = {{.delay_percent = -13.0}, {.delay_percent = 11.0}, {.noise_uv_rms = -1.0},
-                                         {.wire_drift = 1.5}};
+    static const sim_pl_options bad[] = {
+        {.delay_percent = -13.0}, {.delay_percent = 11.0}, {.noise_uv_rms = -1.0}, {.wire_drift = 1.5}};
 
     TEST_ASSERT_EQUAL(-1, sim_pl_init(&s, 0, NULL));
     TEST_ASSERT_EQUAL(-1, sim_pl_init(&s, 63, NULL));

@@ -128,7 +128,8 @@ static void test_addressing_and_clearing(void)
 /* proves: PL-VEC-38, PL-CONV-10, PL-DRDY-03 */
 static void test_convert_and_read_six_cells(void)
 {
-    static const uint8_t want[] = {0x24, 0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x92};
+    static const uint8_t want[] = {0x24, 0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x24,
+                                   0xdd, 0x24, 0xdd, 0x24, 0xdd, 0x92};
 
     spi("013b0102");
     put(0x3f, 0x30, 0x45);
@@ -149,8 +150,10 @@ static void test_convert_and_read_six_cells(void)
 /* proves: PL-VEC-43, PL-G3-02, PL-G3-04 */
 static void test_configuration_with_key(void)
 {
-    static const char *const pairs[] = {"7f4050cc", "7f422c95", "7f4385d6", "7f441544", "7f4585a8", "7f4655a9", "7f47642b"};
-    static const uint8_t want[] = {0x50, 0x00, 0x2c, 0x85, 0x15, 0x85, 0x55, 0x64, 0x5a, 0x00, 0x00, 0x00, 0x83};
+    static const char *const pairs[] = {"7f4050cc", "7f422c95", "7f4385d6", "7f441544",
+                                        "7f4585a8", "7f4655a9", "7f47642b"};
+    static const uint8_t want[] = {0x50, 0x00, 0x2c, 0x85, 0x15, 0x85, 0x55,
+                                   0x64, 0x5a, 0x00, 0x00, 0x00, 0x83};
 
     spi("013b0102");
     spi("7f4050cc");
@@ -246,7 +249,8 @@ static void test_damage(void)
     TEST_ASSERT_EQUAL_HEX8(0xe0, sim_pl_peek(&s, 1, 0x20));
 }
 
-/* An open inner wire leaves the sum alone, balancing makes the reading collapse; a top wire takes from the sum. */
+/* An open inner wire leaves the sum alone, balancing makes the reading collapse; a top wire takes from the
+ * sum. */
 static void test_open_wire(void)
 {
     static const double open_3[6] = {3.6, 3.6, 1.8, 5.4, 3.6, 3.6};
@@ -273,8 +277,8 @@ static void test_supply_thresholds(void)
     static const struct {
         double volts;
         sim_pl_mode mode;
-    } step[] = {{5.31, SIM_PL_ACTIVE}, {5.29, SIM_PL_UVLO}, {4.79, SIM_PL_UVLO}, {4.77, SIM_PL_OFF}, {5.27, SIM_PL_OFF},
-                {5.29, SIM_PL_RESET}};
+    } step[] = {{5.31, SIM_PL_ACTIVE}, {5.29, SIM_PL_UVLO}, {4.79, SIM_PL_UVLO},
+                {4.77, SIM_PL_OFF},    {5.27, SIM_PL_OFF},  {5.29, SIM_PL_RESET}};
 
     for (size_t i = 0; i < sizeof step / sizeof step[0]; i++) {
         sim_pl_set_vbat(&s, 1, step[i].volts);
@@ -337,7 +341,8 @@ static void test_judge_of_state(void)
     expect_put_misuse("PL-ADC-18", 1, 0x34, 1);
     TEST_ASSERT_EQUAL(521 * SIM_PL_US, sim_pl_next_event(&s));
     expect_put_misuse("PL-CONV-14", 1, 0x30, 0x45);
-    expect_misuse("PL-CONV-12", "0203020000" "00");
+    expect_misuse("PL-CONV-12", "0203020000"
+                                "00");
     expect_put_misuse("PL-AMB-67", 1, 0x34, 1);
     sim_pl_advance(&s, SIM_PL_MS);
     sim_pl_set_conv(&s, true);
