@@ -35,7 +35,8 @@ void rig_run(rig *r, uint32_t ms);
 /* Monitor up, self-test passed, scans until standby or on as the request says. */
 void rig_standby(rig *r);
 void rig_on(rig *r);
-/* The module does not answer in the coming scans: readings marked, old values kept, age growing; or answers again. */
+/* The module does not answer in the coming scans: readings marked, old values kept, age growing; or answers
+ * again. */
 void rig_lose(rig *r, uint8_t module);
 void rig_find(rig *r, uint8_t module);
 void rig_all_cells(rig *r, uint16_t mv);

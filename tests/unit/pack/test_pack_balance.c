@@ -12,7 +12,9 @@ void setUp(void)
     rig_init(&r, &config);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static void current(int32_t ma)
 {
@@ -223,8 +225,9 @@ static void stops_at_once(void)
 /* proves: PL-SEQ-10-01, PL-SEQ-10-07 */
 static void test_stops_at_once_for_every_doubt(void)
 {
-    static const uint16_t flags[] = {BQ_F_CELL_OV, BQ_F_CELL_UV, BQ_F_OVERTEMP, BQ_F_DIE_TEMP, BQ_F_SUPPLY,
-                                     BQ_F_RESET,   BQ_F_MEMORY,  BQ_F_COMM,     BQ_F_LOCKUP,   BQ_F_OPEN_WIRE};
+    static const uint16_t flags[] = {BQ_F_CELL_OV, BQ_F_CELL_UV,  BQ_F_OVERTEMP, BQ_F_DIE_TEMP,
+                                     BQ_F_SUPPLY,  BQ_F_RESET,    BQ_F_MEMORY,   BQ_F_COMM,
+                                     BQ_F_LOCKUP,  BQ_F_OPEN_WIRE};
 
     for (unsigned i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         start();

@@ -13,7 +13,9 @@ void setUp(void)
     field = "untouched";
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static void test_the_defaults_of_both_chemistries_are_accepted(void)
 {
@@ -26,7 +28,8 @@ static void test_the_defaults_of_both_chemistries_are_accepted(void)
     TEST_ASSERT_FALSE(c.separate_paths);
     c = bq_pack_config_lfp(6, 0, 1);
     TEST_ASSERT_EQUAL(BQ_OK, bq_pack_config_validate(&c, NULL));
-    TEST_ASSERT_TRUE(c.cell_ov_mv >= 3600 && c.cell_ov_mv <= 3800); /* a full LFP cell has 3.6 V while charging */
+    TEST_ASSERT_TRUE(c.cell_ov_mv >= 3600 &&
+                     c.cell_ov_mv <= 3800); /* a full LFP cell has 3.6 V while charging */
     TEST_ASSERT_TRUE(c.cell_uv_mv >= 2000 && c.cell_uv_mv <= 2800);
 }
 

@@ -13,9 +13,12 @@ void setUp(void)
     rig_init(&r, &config);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
-/* One limit: a value exactly at the trip limit, one step beyond, exactly at the release limit, one step inside. */
+/* One limit: a value exactly at the trip limit, one step beyond, exactly at the release limit, one step
+ * inside. */
 typedef struct limit {
     bq_pack_fault fault;
     int at_trip, beyond, at_clear, inside;
@@ -32,7 +35,8 @@ static const limit limits[] = {
 
 #define LIMITS (sizeof limits / sizeof limits[0])
 
-/* Cell 9 and sensor 3 (both of device 2) carry the value; an imbalance is cell 9 lying that much below the rest. */
+/* Cell 9 and sensor 3 (both of device 2) carry the value; an imbalance is cell 9 lying that much below the
+ * rest. */
 static void put(const limit *l, int value)
 {
     switch (l->fault) {
@@ -281,7 +285,8 @@ static void test_separate_paths_stop_only_what_the_table_says(void)
         put(&limits[i], limits[i].beyond);
         rig_run(&r, config.debounce_ms + RIG_PERIOD);
         TEST_ASSERT_EQUAL(BQ_PACK_FAULT, r.p.state);
-        TEST_ASSERT_EQUAL_MESSAGE(!limits[i].stops_charge, r.a.charge_on, bq_pack_fault_name(limits[i].fault));
+        TEST_ASSERT_EQUAL_MESSAGE(!limits[i].stops_charge, r.a.charge_on,
+                                  bq_pack_fault_name(limits[i].fault));
         TEST_ASSERT_EQUAL_MESSAGE(!limits[i].stops_discharge, r.a.discharge_on,
                                   bq_pack_fault_name(limits[i].fault));
         TEST_ASSERT_EQUAL(limits[i].stops_charge, bq_pack_fault_stops_charge(limits[i].fault));

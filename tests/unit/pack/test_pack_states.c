@@ -13,7 +13,9 @@ void setUp(void)
     rig_init(&r, &config);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static void off(void)
 {
@@ -275,9 +277,9 @@ static void test_a_fault_survives_sleep(void)
 static void test_names(void)
 {
     static const char *const faults[BQ_FAULT_COUNT] = {
-        "cell_ov",      "cell_uv",       "overtemp",  "undertemp", "imbalance", "comm_loss", "chip",       "chip_cell_ov",
-        "chip_cell_uv", "chip_overtemp", "open_wire", "sensor",    "self_test", "config",    "contactor",
-        "no_reading",   "overcurrent"};
+        "cell_ov",   "cell_uv",      "overtemp",     "undertemp",     "imbalance",  "comm_loss",
+        "chip",      "chip_cell_ov", "chip_cell_uv", "chip_overtemp", "open_wire",  "sensor",
+        "self_test", "config",       "contactor",    "no_reading",    "overcurrent"};
     static const char *const states[] = {"init", "self-test", "standby", "on", "fault", "sleep"};
     static const char *const holds[] = {"none", "condition", "hysteresis", "unknown", "request", "time"};
 
@@ -307,10 +309,11 @@ static void test_every_fault_forbids_something(void)
 static void test_the_cause_is_the_most_serious_active_fault(void)
 {
     static const bq_pack_fault order[] = {
-        BQ_FAULT_CHIP,         BQ_FAULT_CONTACTOR,    BQ_FAULT_OVERCURRENT, BQ_FAULT_CHIP_CELL_OV, BQ_FAULT_CELL_OV,
-        BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,    BQ_FAULT_CHIP_CELL_UV, BQ_FAULT_CELL_UV,     BQ_FAULT_UNDERTEMP,
-        BQ_FAULT_OPEN_WIRE,    BQ_FAULT_COMM_LOSS,    BQ_FAULT_NO_READING,  BQ_FAULT_SENSOR,       BQ_FAULT_SELF_TEST,
-        BQ_FAULT_CONFIG,       BQ_FAULT_IMBALANCE};
+        BQ_FAULT_CHIP,       BQ_FAULT_CONTACTOR,     BQ_FAULT_OVERCURRENT, BQ_FAULT_CHIP_CELL_OV,
+        BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,    BQ_FAULT_CHIP_CELL_UV,
+        BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,   BQ_FAULT_COMM_LOSS,
+        BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,   BQ_FAULT_CONFIG,
+        BQ_FAULT_IMBALANCE};
     const int n = (int)(sizeof order / sizeof order[0]);
 
     TEST_ASSERT_EQUAL(BQ_FAULT_COUNT, n);
@@ -370,7 +373,8 @@ static void live(rig *x, int n)
     }
 }
 
-/* Two instances, the clock of one of them wrapping in the middle: equal actions, equal state but for the time stamps. */
+/* Two instances, the clock of one of them wrapping in the middle: equal actions, equal state but for the time
+ * stamps. */
 static void test_same_inputs_same_outputs_also_across_the_wrap_of_time(void)
 {
     static rig other;

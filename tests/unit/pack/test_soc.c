@@ -21,7 +21,9 @@ void setUp(void)
     bq_soc_init(&s);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static void rest_at(uint16_t mv)
 {
@@ -37,7 +39,7 @@ static void test_the_start_value_is_interpolated_and_held_at_the_ends(void)
     static const struct {
         uint16_t mv;
         int16_t permille;
-    } points[] = {{2000, 0},   {3000, 0},   {3006, 5},   {3300, 250}, {3599, 499},
+    } points[] = {{2000, 0},   {3000, 0},   {3006, 5},   {3300, 250},  {3599, 499},
                   {3600, 500}, {3660, 640}, {3900, 800}, {4200, 1000}, {5000, 1000}};
 
     for (unsigned i = 0; i < sizeof points / sizeof points[0]; i++) {
