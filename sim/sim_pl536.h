@@ -69,7 +69,8 @@ typedef struct sim_pl_options {
                                 low */
 } sim_pl_options;
 
-#include "sim_pl536_state.h" /* struct sim_pl, complete so that a caller can own it; its members are private */
+/* struct sim_pl: complete, so that a caller can own it; its members are private */
+#include "sim_pl536_state.h"
 
 /* ---- life ---------------------------------------------------------------------------------- */
 
