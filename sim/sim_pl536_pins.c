@@ -86,7 +86,7 @@ void sim_pl_record(sim_pl *s, struct sim_vcd *vcd)
     initial[SIG_DRDY] = sim_pl_drdy_pin(s);
     initial[SIG_FAULT] = sim_pl_fault_pin(s);
     initial[SIG_ALERT] = sim_pl_alert_pin(s);
-    s->vcd_time = s->now > vcd->now ? s->now : vcd->now;
+    s->vcd_time = s->vcd_free = s->now > vcd->now ? s->now : vcd->now;
     for (int i = 0; i < 8; i++) {
         s->vcd_signal[i] = sim_vcd_signal(vcd, name[i], initial[i]);
     }
@@ -123,7 +123,7 @@ static int bit_at(const uint8_t *bytes, size_t bit)
 void sim_pl_record_packet(sim_pl *s, const uint8_t *tx, const uint8_t *rx, size_t bits)
 {
     uint64_t half = 500000000ull / s->spi_hz;
-    uint64_t at = s->now > s->vcd_time ? s->now : s->vcd_time;
+    uint64_t at = s->now > s->vcd_free ? s->now : s->vcd_free;
 
     show(s, SIG_CS, at, 0);
     show(s, SIG_SDO, at, s->options.amb12_idle_ff);
@@ -139,5 +139,6 @@ void sim_pl_record_packet(sim_pl *s, const uint8_t *tx, const uint8_t *rx, size_
     show(s, SIG_SDI, at, 0);
     show(s, SIG_SDO, at, -1);
     show(s, SIG_CS, at, 1);
-    s->vcd_time = at + 3 * SIM_PL_US;
+    s->vcd_time = at;
+    s->vcd_free = at + 3 * SIM_PL_US;
 }

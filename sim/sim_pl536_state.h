@@ -85,7 +85,8 @@ struct sim_pl {
     bool link_broken[SIM_PL_MAX_DEVICES];
     struct sim_vcd *vcd;
     int vcd_signal[8];
-    uint64_t vcd_time;
+    uint64_t vcd_time; /**< how far the waveform got */
+    uint64_t vcd_free; /**< the next packet may begin */
     sim_bus_fault fault;
     sim_misuse misuse;
     sim_pl_dev dev[SIM_PL_MAX_DEVICES];
