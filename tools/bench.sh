@@ -1,0 +1,185 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Measures and writes docs/performance.md (or the file named). Fails if a scan needs more bytes than it must, if the library holds
+# writable data or wants anything from outside, or if its stack is not bounded.
+# usage: tools/bench.sh [FILE]
+set -euo pipefail
+# shellcheck source=tools/needs.sh
+source "$(dirname "$0")/needs.sh"
+need_tools
+cd "$root"
+out=${1:-docs/performance.md}
+page=$(mktemp)
+trap 'rm -f "$page"' EXIT
+
+arm() { have arm-none-eabi-gcc; }
+version() { "$1" -v 2>&1 | tail -n 1; }
+
+build() { # build CRC_FORM TARGET: an optimised build with line numbers, which change nothing
+    local tree=$root/build/bench-$1
+    fresh_if_foreign "$tree"
+    cmake -S "$root" -B "$tree" -G "$generator" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBQHOST_BUILD_TESTS=OFF \
+        -DBQHOST_OTP=ON -DBQHOST_CRC8="$1" >/dev/null
+    cmake --build "$tree" --parallel "$jobs" --target "$2" >/dev/null
+}
+
+run() { # run CRC_FORM TOOL ARGUMENT...: a tool of that build
+    "$root/build/bench-$1/tools/$2/$2" "${@:3}"
+}
+
+# Instructions of one scan of 32 devices, room by room: the difference of runs with 10 and with 110 scans.
+instructions() { # instructions CRC_FORM
+    local count
+    for count in 10 110; do
+        valgrind --tool=callgrind --callgrind-out-file="$root/build/bench-$1/callgrind.$count" \
+            "$root/build/bench-$1/tools/bench/bench" scan 32 "$count" >/dev/null 2>"$root/build/bench-$1/callgrind.log"
+    done
+    python3 tools/bench/selfcost.py "$root" "$root/build/bench-$1/callgrind.10" "$root/build/bench-$1/callgrind.110" 100
+}
+
+instruction_rows() {
+    local form
+    for form in table256 table16 bitwise; do
+        build "$form" bench
+        instructions "$form" | awk -v form="$form" '
+            { cost[$1] = $2; sum += $2 }
+            END { printf "| %s | %.0f | %.0f | %.0f | %.0f | **%.0f** |\n", form, cost["src/core"], cost["drivers"], cost["include"],
+                  sum, sum / 192 }'
+    done
+}
+
+linked() { # linked CPU [FLAG]: text, constants and RAM of an image
+    arm-none-eabi-gcc -Os -mcpu="$1" -mthumb -std=c99 -ffunction-sections -fdata-sections -Iinclude "${@:2}" \
+        tools/bench/image.c $(find src drivers -name '*.c') -nostartfiles --specs=nano.specs --specs=nosys.specs \
+        -Wl,--gc-sections -Wl,-e,main -o "$root/build/bench-table16/image.elf"
+    arm-none-eabi-size "$root/build/bench-table16/image.elf" | awk 'NR == 2 { print $1 + $2 " | " $2 + $3 }'
+}
+
+stack_rows() { # stack_rows NAME OPTION...
+    python3 tools/stack.py --limit 1024 "${@:2}" | awk -v name="$1" '
+        !first++ || $2 == "bq76pl536_poll" { path = $0; sub(/^ *[0-9]+ /, "", path); print "| " name " | " $1 " | `" path "` |" }'
+}
+
+bus_part() {
+    cat <<'TEXT'
+# What it costs
+
+Every figure stands under the command that makes it; `tools/bench.sh` runs them all and writes this page. Figures of time depend on
+the computer; the others repeat exactly with the same compiler.
+
+## The bus
+
+One complete scan of a healthy stack: convert everywhere, then status, brick voltage, six cells and two temperatures of every
+device. The command fails unless it is one broadcast of 4 bytes and one burst of 23 bytes for each device.
+
+    build/bench-table16/tools/bench/bench bus
+
+TEXT
+    run table16 bench bus
+    cat <<'TEXT'
+
+Bus time is 8 clocks a byte and 3 us between packets. Besides scans, the configuration of one device is read back every
+`scrub_period_ms`, and balancing adds its writes while it runs.
+TEXT
+}
+
+instruction_part() {
+    cat <<TEXT
+
+## Instructions
+
+Scan of 32 devices (192 cells, 64 temperatures) and copying the sample, x86-64, \`-O2\`, $(version cc). Counted is what
+is executed in the library's own sources, inlined functions included; simulator, back-end and C library are not. Two runs of different
+length are subtracted, so that set-up cancels out. The rows differ in the form of the CRC (\`BQHOST_CRC8\`).
+
+    valgrind --tool=callgrind --callgrind-out-file=more build/bench-table16/tools/bench/bench scan 32 110    # and: fewer, 10
+    tools/bench/selfcost.py "\$PWD" fewer more 100
+
+| CRC | src/core | drivers | inlined from include | whole scan | for each cell |
+|---|---|---|---|---|---|
+TEXT
+    instruction_rows
+}
+
+size_part() {
+    cat <<TEXT
+
+## Size
+
+Bytes of all objects, \`BQHOST_OTP\` on. The command fails if an object holds writable data or wants anything but memory functions: no
+heap, no floating point, no standard I/O.
+
+    tools/size.sh cc -Os
+
+$(version cc):
+
+$(sh tools/size.sh cc -Os)
+TEXT
+    arm || return 0
+    cat <<TEXT
+
+    tools/size.sh arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb
+
+$(version arm-none-eabi-gcc):
+
+$(sh tools/size.sh arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb)
+
+What a linker keeps of it, with the smallest possible board (\`tools/bench/image.c\`, 32 devices, \`BQHOST_OTP\` off); flash includes the
+compiler's helpers, RAM is everything the firmware owns but the stack:
+
+    arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb -ffunction-sections -fdata-sections -Wl,--gc-sections ... tools/bench/image.c
+
+| image | core | flash | RAM |
+|---|---|---|---|
+| driver alone | Cortex-M0 | $(linked cortex-m0) |
+| driver, pack controller and super-loop | Cortex-M0 | $(linked cortex-m0 -DWHOLE) |
+| driver alone | Cortex-M4 | $(linked cortex-m4) |
+| driver, pack controller and super-loop | Cortex-M4 | $(linked cortex-m4 -DWHOLE) |
+TEXT
+}
+
+stack_part() {
+    cat <<'TEXT'
+
+## Stack
+
+Deepest path from any entry point, bytes, found from the compiler's call graph; first the deepest of all, then that of the
+driver's poll. What the board's own functions need comes on top. The command fails on recursion, on frames of unknown size and on
+calls through pointers whose targets are not declared in `tools/stack.targets`.
+
+    tools/stack.py                                                                    # x86-64
+TEXT
+    ! arm || echo '    tools/stack.py --cc arm-none-eabi-gcc --flags="-Os -mcpu=cortex-m0 -mthumb"'
+    printf '\n| target | bytes | path |\n|---|---|---|\n'
+    stack_rows x86-64
+    ! arm || stack_rows Cortex-M0 --cc arm-none-eabi-gcc --flags="-Os -mcpu=cortex-m0 -mthumb"
+    ! arm || stack_rows Cortex-M4 --cc arm-none-eabi-gcc --flags="-Os -mcpu=cortex-m4 -mthumb"
+}
+
+speed_part() {
+    build table16 packsim
+    cat <<'TEXT'
+
+## Speed of the simulation
+
+The whole firmware on a simulated pack of 32 devices, 192 cells, in a drive cycle, ten scans a second, on one core. Speed is in
+times real time; bytes per scan include the read-back of configuration.
+
+    build/bench-table16/tools/packsim/packsim tools/bench/speed.ini --quiet
+
+| | |
+|---|---|
+TEXT
+    run table16 packsim tools/bench/speed.ini --quiet |
+        sed -n -E 's/^(devices found|cells|simulated|scans|bus bytes per scan|misuse|speed|result): (.*)$/| \1 | \2 |/p'
+}
+
+for tool in valgrind python3; do
+    have $tool || { echo "bench: $tool is needed" >&2; exit 1; }
+done
+build table16 bench
+for part in bus instruction size stack speed; do
+    "${part}_part" >>"$page"
+done
+cp "$page" "$out"
+echo "written: $out"
