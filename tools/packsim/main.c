@@ -19,6 +19,7 @@ typedef struct session {
     ps_rig rig;
     ps_judge judge;
     ps_csv csv;
+    ps_report report;
     ps_run run;
 } session;
 
@@ -54,7 +55,8 @@ static int prepare(session *x, ps_error *e)
     ps_judge_init(&x->judge, &x->scenario);
     x->run.rig = &x->rig;
     x->run.judge = &x->judge;
-    x->run.progress = !x->options.quiet && isatty(STDERR_FILENO) == 1;
+    x->run.watch = x->options.watch;
+    x->run.progress = !x->options.quiet && !x->options.watch && isatty(STDERR_FILENO) == 1;
     if (x->options.vcd != NULL && ps_rig_record(&x->rig, x->options.vcd) != 0) {
         return ps_fail(e, (ps_place){x->options.vcd, 0}, "%s", strerror(errno));
     }
@@ -64,7 +66,25 @@ static int prepare(session *x, ps_error *e)
         }
         x->run.csv = &x->csv;
     }
+    if (x->options.report != NULL) {
+        if (ps_report_open(&x->report, x->options.report, x->scenario.cells) != 0) {
+            return ps_fail(e, (ps_place){x->options.report, 0}, "%s", strerror(errno));
+        }
+        x->run.report = &x->report;
+    }
     return 0;
+}
+
+static int write_report(session *x)
+{
+    FILE *summary = tmpfile();
+    if (summary == NULL) {
+        return -1;
+    }
+    (void)ps_summary(summary, &x->run, false);
+    int status = ps_report_close(&x->report, &x->scenario, &x->judge, summary);
+    (void)fclose(summary);
+    return status;
 }
 
 static int finish(session *x)
@@ -72,6 +92,10 @@ static int finish(session *x)
     int status = ps_summary(stdout, &x->run, x->options.quiet) ? EXIT_PASS : EXIT_FAILED;
     if (x->run.csv != NULL && ps_csv_close(&x->csv) != 0) {
         (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.csv);
+        status = EXIT_UNUSABLE;
+    }
+    if (x->run.report != NULL && write_report(x) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.report);
         status = EXIT_UNUSABLE;
     }
     if (ps_rig_close(&x->rig) != 0) {

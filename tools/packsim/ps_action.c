@@ -2,6 +2,7 @@
 /* The [events] section: T = ACTION. */
 #include "ps_scenario.h"
 
+#include <stdio.h>
 #include <string.h>
 
 typedef struct context {
@@ -170,6 +171,7 @@ int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const ch
     };
     memset(v, 0, sizeof *v);
     v->at = at;
+    (void)snprintf(v->text, sizeof v->text, "%s", action);
     if (!ps_time(time, &v->t)) {
         return ps_fail(e, at, "%s is not a time (number and us, ms, s, min or h)", time);
     }

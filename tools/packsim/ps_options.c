@@ -58,21 +58,28 @@ static int take_vcd(ps_options *o, const char *text, int i, ps_error *e)
     return 0;
 }
 
+static int take_report(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->report = text;
+    return 0;
+}
+
 static int take_later(ps_options *o, const char *text, int i, ps_error *e)
 {
     (void)o;
     (void)text;
-    return usage(e, "command line", i, "--report, --can and --watch are not supported yet");
+    return usage(e, "command line", i, "--can is not supported yet");
 }
 
 static const struct {
     const char *name;
-    bool argument;
     int (*take)(ps_options *o, const char *text, int i, ps_error *e);
 } options[] = {
-    {"--duration", true, take_duration}, {"--current", true, take_current}, {"--csv", true, take_csv},
-    {"--seed", true, take_seed},         {"--set", true, take_set},         {"--vcd", true, take_vcd},
-    {"--report", true, take_later},      {"--can", true, take_later},       {"--watch", false, take_later},
+    {"--duration", take_duration}, {"--current", take_current}, {"--csv", take_csv},
+    {"--seed", take_seed},         {"--set", take_set},         {"--vcd", take_vcd},
+    {"--report", take_report},     {"--can", take_later},
 };
 
 static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e)
@@ -80,9 +87,6 @@ static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e
     for (size_t k = 0; k < sizeof options / sizeof options[0]; k++) {
         if (strcmp(argv[*i], options[k].name) != 0) {
             continue;
-        }
-        if (!options[k].argument) {
-            return options[k].take(o, NULL, *i, e);
         }
         *i += 1;
         return *i < argc ? options[k].take(o, argv[*i], *i, e)
@@ -99,6 +103,8 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
             o->quiet = true;
         } else if (strcmp(argv[i], "--list") == 0) {
             o->list = true;
+        } else if (strcmp(argv[i], "--watch") == 0) {
+            o->watch = true;
         } else if (strcmp(argv[i], "--help") == 0) {
             o->help = true;
         } else if (argv[i][0] == '-') {
@@ -120,8 +126,9 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
 void ps_options_help(FILE *to)
 {
     (void)fputs(
-        "packsim SCENARIO.ini [--duration T] [--current FILE.csv] [--csv FILE] [--vcd FILE] [--seed N]\n"
-        "        [--set SECTION.KEY=VALUE]... [--quiet]\n"
+        "packsim SCENARIO.ini [--duration T] [--current FILE.csv] [--csv FILE]\n"
+        "        [--report FILE.html] [--vcd FILE] [--seed N]"
+        " [--set SECTION.KEY=VALUE]... [--watch] [--quiet]\n"
         "packsim --list\n"
         "\n"
         "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, "

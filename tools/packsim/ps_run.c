@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "ps_run.h"
+#include "ps_watch.h"
 
 #include <math.h>
 #include <time.h>
@@ -108,14 +109,35 @@ static void do_events(ps_run *u, uint64_t now)
 
 static void progress(ps_run *u, uint64_t now)
 {
-    u->next_progress = now + PS_S;
+    u->next_progress = now + (u->watch ? 1u : 10u) * 100u * PS_MS;
     uint64_t wall = wall_ns();
     if (wall - u->shown_wall_ns < 200 * PS_MS) {
         return;
     }
     u->shown_wall_ns = wall;
+    if (u->watch) {
+        ps_watch_draw(stderr, now, &u->rig->fw.app, u->found, u->drawn ? 0 : 1);
+        u->drawn = true;
+        return;
+    }
     (void)fprintf(stderr, "\r%.0f / %.0f s  %s   ", (double)now / 1e9, (double)u->rig->s->duration / 1e9,
                   bq_pack_state_name(bq_app_pack(&u->rig->fw.app)->state));
+}
+
+static bool rows_wanted(const ps_run *u)
+{
+    return u->csv != NULL || u->report != NULL;
+}
+
+static void rows(ps_run *u)
+{
+    if (u->csv != NULL) {
+        ps_csv_row(u->csv, u->next_row, &u->rig->fw.app, &u->rig->world);
+    }
+    if (u->report != NULL) {
+        ps_report_take(u->report, u->next_row, &u->rig->fw.app);
+    }
+    u->next_row += u->rig->s->period;
 }
 
 /* One turn of the firmware, with everything that is due at this moment. Returns its hint in nanoseconds. */
@@ -134,11 +156,10 @@ static uint64_t turn(ps_run *u, uint64_t now)
     if (u->next_look <= now) {
         look(u);
     }
-    while (u->csv != NULL && u->next_row <= now) {
-        ps_csv_row(u->csv, u->next_row, &r->fw.app, &r->world);
-        u->next_row += r->s->period;
+    while (rows_wanted(u) && u->next_row <= now) {
+        rows(u);
     }
-    if (u->progress && u->next_progress <= now) {
+    if ((u->progress || u->watch) && u->next_progress <= now) {
         progress(u, now);
     }
     return hint;
@@ -153,7 +174,7 @@ static uint64_t next_stop(const ps_run *u)
 {
     const ps_scenario *s = u->rig->s;
     uint64_t stop = earlier(s->duration, u->next_look);
-    if (u->csv != NULL) {
+    if (rows_wanted(u)) {
         stop = earlier(stop, u->next_row);
     }
     return u->next_event < s->events ? earlier(stop, s->event[u->next_event].t) : stop;
@@ -170,7 +191,7 @@ static void loop(ps_run *u)
         now = ps_rig_now(r);
         uint64_t stop = next_stop(u);
         if (stop <= now) {
-            if (now >= r->s->duration && u->next_look > now && (u->csv == NULL || u->next_row > now)) {
+            if (now >= r->s->duration && u->next_look > now && (!rows_wanted(u) || u->next_row > now)) {
                 return;
             }
             continue;
@@ -198,7 +219,9 @@ void ps_run_all(ps_run *u)
     u->totals.misuse = sim_pl_misuse(&u->rig->pl)->count;
     u->totals.speed = (double)u->simulated / 1e9 / (seconds > 1e-9 ? seconds : 1e-9);
     ps_judge_end(u->judge, &u->totals);
-    if (u->progress) {
+    if (u->watch) {
+        ps_watch_draw(stderr, u->simulated, &u->rig->fw.app, u->found, 0);
+    } else if (u->progress) {
         (void)fputs("\r\033[K", stderr);
     }
 }

@@ -8,13 +8,16 @@
 
 #include "ps_csv.h"
 #include "ps_judge.h"
+#include "ps_report.h"
 #include "ps_rig.h"
 
 typedef struct ps_run {
     ps_rig *rig;
     ps_judge *judge;
-    ps_csv *csv;   /**< NULL = no table */
-    bool progress; /**< a line on standard error */
+    ps_csv *csv;       /**< NULL = no table */
+    ps_report *report; /**< NULL = none */
+    bool watch;        /**< live view on standard error */
+    bool progress;     /**< a line on standard error */
     /* results */
     int found;             /**< most devices found */
     uint64_t scans;        /**< complete updates */
@@ -29,6 +32,7 @@ typedef struct ps_run {
     bool seen_sample;
     uint64_t bytes_at_sample, bytes_sum, bytes_scans;
     uint64_t shown_wall_ns;
+    bool drawn;
 } ps_run;
 
 /** Runs the scenario to its end. */

@@ -15,6 +15,7 @@
 
 #define PS_EVENTS 256
 #define PS_EXPECTS 128
+#define PS_EVENT_TEXT 64
 #define PS_EXPECT_TEXT PS_INI_TEXT
 
 typedef enum ps_action_kind {
@@ -42,6 +43,7 @@ typedef struct ps_event {
     int n;
     bool on;
     double value;
+    char text[PS_EVENT_TEXT]; /**< the action, for people */
 } ps_event;
 
 typedef enum ps_expect_kind {

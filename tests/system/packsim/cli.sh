@@ -144,7 +144,7 @@ option_refused 'not a time' good.ini --duration 10
 option_refused 'not a whole number' good.ini --seed x
 option_refused 'more than one' good.ini good.ini
 option_refused 'no scenario' --quiet
-option_refused 'not supported yet' good.ini --watch
+option_refused 'not supported yet' good.ini --can x
 option_refused 'nowhere.csv' good.ini --current nowhere.csv
 option_refused 'No such file' good.ini --csv nowhere/a.csv
 
@@ -160,6 +160,15 @@ awk -F, 'END { exit $3 != "4.000" }' e.csv || fail "--current without effect: $(
 
 "$packsim" good.ini --duration 1s --vcd w.vcd --quiet >/dev/null || fail "--vcd"
 grep -q '^\$enddefinitions' w.vcd || fail "no waveform"
+
+"$packsim" good.ini --report r.html --watch --quiet >out 2>err || fail "--report --watch"
+grep -q '^expectations: 3/3' r.html || fail "report without summary"
+[ "$(grep -c '<svg' r.html)" -eq 8 ] || fail "report without its charts"
+grep -q 'class="cell" d="M' r.html || fail "report without cell voltages"
+grep -q 'event: cell 3 volts 3.3' r.html || fail "report without events"
+! grep -q 'http' r.html || fail "report needs a network"
+grep -q '12.0 s  on  outputs on  devices 2' err || fail "no live view"
+[ "$(tail -1 out)" = 'result: pass' ] || fail "--watch disturbs the summary"
 
 "$packsim" --list >out || fail "--list"
 for scenario in "$scenarios"/*.ini; do
