@@ -24,7 +24,7 @@ static bq_status begin(fake_board *f, bq_app_job job, char what)
     if (j->begin != BQ_OK) {
         return j->begin;
     }
-    f->running = job;
+    f->running = (int)job;
     f->ends_us = f->us + j->takes_us;
     j->begun++;
     j->begun_us = f->us;
