@@ -4,15 +4,13 @@
  * The super-loop: joins a monitor (bq_afe), the pack controller and the board's lines. Nothing blocks.
  *
  * Every period: begin a scan, poll it to its end, copy the sample, read the ammeter, run the pack step, write
- * the contactor line
- * if it has to open, hand the action to the monitor, poll that to its end, and only then write the contactor
- * line if it has to close.
+ * the contactor line if it has to open, hand the action to the monitor, poll that to its end, and only then
+ * write the contactor line if it has to close.
  *
  * Guarantees, as long as bq_app_step() is called at the latest when its hint has passed:
  * - The pack step runs at least every 1.25 x period_ms, with old data and their age if nothing newer is
- *   there, even if the monitor's
- *   jobs never end or its functions return errors for ever. Opening the contactor waits for no monitor. So
- *   the line is low at the latest
+ *   there, even if the monitor's jobs never end or its functions return errors for ever. Opening the
+ *   contactor waits for no monitor. So the line is low at the latest
  *       pack.comm_timeout_ms + 1.25 x period_ms
  *   after the conversion start of the last complete valid picture, plus the lateness of the caller.
  * - With a contradicting feedback contact: BQ_PACK_MISMATCH_MS + 1.25 x period_ms.
@@ -38,9 +36,8 @@ typedef struct bq_app_config {
     uint32_t retry_ms;  /**< pause between attempts at bring-up, wake, sleep and self-test, 100..60000; 0 =
                              1000 */
     uint8_t balance_timer_s; /**< safety timer of the monitors' balancing outputs; 0 = they have none or
-                                  balancing is never used. 0.9 x timer
-                                  must exceed the longest time between two steps, 1.25 x period_ms (PL-CB-14)
-                                  */
+                                  balancing is never used. 0.9 x timer must exceed the longest time between
+                                  two steps, 1.25 x period_ms (PL-CB-14) */
     bq_pack_config pack;
 } bq_app_config;
 
@@ -101,43 +98,36 @@ typedef struct bq_app {
 
 /**
  * Checks every field: the statuses of bq_pack_config_validate(), BQ_E_RANGE (period_ms, retry_ms),
- * BQ_E_CONFIG (comm_timeout_ms shorter than two
- * periods; balance_timer_s too short for the period). `field` as there.
+ * BQ_E_CONFIG (comm_timeout_ms shorter than two periods; balance_timer_s too short for the period). `field`
+ * as there.
  */
 bq_status bq_app_config_validate(const bq_app_config *config, const char **field);
 
 /**
  * Sets up the loop and opens the contactor and precharge lines; the monitor is first touched by
- * bq_app_step().
- * `config`, `afe`, `gpio`, `clock`, `ammeter` are copied (their `ctx` must outlive the instance). `gpio` NULL
- * = the board has no line;
- * `ammeter` NULL = the monitor measures the current or nobody does. The three arrays hold the sample and
- * belong to the instance
- * until it is no longer used; their lengths must be at least the configured cells, sensors (array NULL with
- * 0) and modules.
- * BQ_OK; BQ_E_ARG (null pointer, missing function, array too short); the statuses of
- * bq_app_config_validate(); or what the contactor line
- * returned if it could not be opened (BQ_E_UNSUPPORTED is no error). After an error the instance must not be
- * used.
+ * bq_app_step(). `config`, `afe`, `gpio`, `clock`, `ammeter` are copied (their `ctx` must outlive the
+ * instance). `gpio` NULL = the board has no line; `ammeter` NULL = the monitor measures the current or nobody
+ * does. The three arrays hold the sample and belong to the instance until it is no longer used; their lengths
+ * must be at least the configured cells, sensors (array NULL with 0) and modules. BQ_OK; BQ_E_ARG (null
+ * pointer, missing function, array too short); the statuses of bq_app_config_validate(); or what the
+ * contactor line returned if it could not be opened (BQ_E_UNSUPPORTED is no error). After an error the
+ * instance must not be used.
  */
-bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *afe, const bq_gpio *gpio, const
-bq_clock *clock,
-                      const bq_ammeter *ammeter, bq_cell_reading *cells, uint16_t cell_capacity,
-                      bq_temp_reading *temps,
-                      uint16_t temp_capacity, bq_module_reading *modules, uint16_t module_capacity);
+bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *afe, const bq_gpio *gpio,
+                      const bq_clock *clock, const bq_ammeter *ammeter, bq_cell_reading *cells,
+                      uint16_t cell_capacity, bq_temp_reading *temps, uint16_t temp_capacity,
+                      bq_module_reading *modules, uint16_t module_capacity);
 
 /**
  * One pass: polls the running job once, runs what is due, returns at once. The result is the time in
- * microseconds until the next thing is
- * due (0 = call again at once); calling earlier is harmless, calling later costs punctuality, and calls must
- * come at least
- * every 2^31 us. The state of charge, timeouts and periods follow the clock, not the number of calls.
+ * microseconds until the next thing is due (0 = call again at once); calling earlier is harmless, calling
+ * later costs punctuality, and calls must come at least every 2^31 us. The state of charge, timeouts and
+ * periods follow the clock, not the number of calls.
  */
 uint32_t bq_app_step(bq_app *app);
 
 /** What the user wants; initially BQ_REQUEST_OFF. Takes effect in the next bq_app_step(). BQ_OK; BQ_E_ARG
- *  (NULL, or not a bq_pack_request:
- *  the request stays as it was). */
+ *  (NULL, or not a bq_pack_request: the request stays as it was). */
 bq_status bq_app_request(bq_app *app, bq_pack_request request);
 
 /** The picture the last pack step saw (counts are 0 before the first), the pack controller, the last action,

@@ -2,28 +2,23 @@
 /**
  * @file pack.h
  * The pack controller: one step from (configuration, state, sample, input, time) to an action. It calls
- * nothing, reads no
- * clock and keeps no state outside bq_pack: the same inputs in the same order give the same actions on every
- * platform.
+ * nothing, reads no clock and keeps no state outside bq_pack: the same inputs in the same order give the same
+ * actions on every platform.
  *
  * Rules
- * - Safe direction first. Outputs are on only in the state "on", which needs: request on, self-test passed,
- *   no fault, no limit
- *   being broken, and a valid, fresh reading of every configured cell and sensor.
+ * - Safe direction first. Outputs go on only on entering the state "on", which needs: request on, self-test
+ *   passed, no fault, no limit being broken, and a valid, fresh reading of every configured cell and sensor.
+ *   Any fault ends it (with separate_paths, one direction may stay on, see there).
  * - A value stands until a newer valid one of the same cell or sensor replaces it: a reading that breaks a
- *   limit and is then lost
- *   keeps the debounce time running.
+ *   limit and is then lost keeps the debounce time running.
  * - The time for which a module could not be judged is counted from the conversion start of its last
- *   complete, valid set of
- *   readings ("blind time"). Above comm_timeout_ms the outputs go off, whatever the reason was.
- *   A lost scan within comm_timeout_ms trips nothing; it only pauses balancing.
+ *   complete, valid set of readings ("blind time"). Above comm_timeout_ms the outputs go off, whatever the
+ *   reason was. A lost scan within comm_timeout_ms trips nothing; it only pauses balancing.
  * - Worst cases, from the physical event to the action with outputs off, when bq_pack_step() is called at
- *   least every STEP ms:
- *     nothing valid arrives any more:                     comm_timeout_ms + STEP
- *     a limit is broken, no reading lost, PERIOD ms between conversions, arriving S ms after the conversion
- *     start:
- *                                                         PERIOD + S + debounce_ms + STEP
- *     a limit is broken, whatever the link does:          comm_timeout_ms + debounce_ms + 2 STEP
+ *   least every STEP ms, PERIOD ms lie between two conversions, and readings arrive S ms after their start:
+ *     nothing valid arrives any more                 comm_timeout_ms + STEP
+ *     a limit is broken and no reading is lost       PERIOD + S + debounce_ms + STEP
+ *     a limit is broken, whatever the link does      comm_timeout_ms + debounce_ms + 2 STEP
  *   (bq_app guarantees STEP = 1.25 x its period, see app.h.)
  *
  * States
@@ -40,8 +35,7 @@
  *     standby    on         request on, picture complete, no cause of a fault present, the contactor agrees
  *     on         standby    request is not on
  * One line per step. In the state "on" a monitor that is no longer up matters only through what it then fails
- * to deliver:
- * the blind time. In the state "sleep" nothing is judged and active faults are kept.
+ * to deliver: the blind time. In the state "sleep" nothing is judged and active faults are kept.
  */
 #ifndef BQHOST_PACK_H
 #define BQHOST_PACK_H
@@ -100,8 +94,7 @@ typedef enum bq_pack_request { BQ_REQUEST_OFF, BQ_REQUEST_ON, BQ_REQUEST_SLEEP }
 typedef enum bq_pack_hold {
     BQ_HOLD_NONE,       /**< "none": not active */
     BQ_HOLD_CONDITION,  /**< "condition": the cause is present */
-    BQ_HOLD_HYSTERESIS, /**< "hysteresis": no longer beyond the trip limit, not yet beyond the release limit
-                             */
+    BQ_HOLD_HYSTERESIS, /**< "hysteresis": not beyond the trip limit, not yet beyond the release limit */
     BQ_HOLD_UNKNOWN,    /**< "unknown": not every configured value is valid and fresh */
     BQ_HOLD_REQUEST,    /**< "request": latched, waits for request off */
     BQ_HOLD_TIME        /**< "time": cleared, recover_ms has not passed yet */
@@ -137,9 +130,8 @@ typedef struct bq_pack_config {
     uint8_t balance_duty_percent; /**< share of steps in which bleeding is allowed, 1..100 */
     uint8_t balance_max_per_module; /**< cells bled at once in one module, the highest first; 0 = all */
     bool separate_paths; /**< charging and discharging are switched separately: a fault that forbids only one
-                              direction leaves the
-                              other as it is (never switches it on). false = one contactor: every fault
-                              forbids both. */
+                              direction leaves the other as it is (never switches it on). false = one
+                              contactor: every fault forbids both. */
     bq_soc_config soc;   /**< points = 0: no state of charge */
 } bq_pack_config;
 
@@ -216,7 +208,7 @@ typedef struct bq_pack_summary {
     bool complete;                 /**< every configured value is valid and fresh */
 } bq_pack_summary;
 
-/** One pack controller, about 2 KB. Caller-owned; read any field, write none. */
+/** One pack controller, about 1.6 KB. Caller-owned; read any field, write none. */
 typedef struct bq_pack {
     bq_pack_config config;
     bq_pack_state_id state;
@@ -240,27 +232,22 @@ typedef struct bq_pack {
 
 /**
  * Complete limits for NMC and for LFP cells, without state of charge. The numbers are ordinary ones for the
- * chemistry, not
- * those of any cell's datasheet: check them against the cell in use.
+ * chemistry, not those of any cell's datasheet: check them against the cell in use.
  */
 bq_pack_config bq_pack_config_nmc(uint16_t cells, uint16_t sensors, uint16_t modules);
 bq_pack_config bq_pack_config_lfp(uint16_t cells, uint16_t sensors, uint16_t modules);
 
 /**
  * Checks every field against the ranges above and against each other. BQ_OK; BQ_E_RANGE (a value outside its
- * range);
- * BQ_E_CONFIG (fields that contradict each other); BQ_E_ARG (`config` NULL). `field` may be NULL; otherwise
- * `*field` is set to the
- * name of the first offending field, NULL with BQ_OK and BQ_E_ARG.
+ * range); BQ_E_CONFIG (fields that contradict each other); BQ_E_ARG (`config` NULL). `field` may be NULL;
+ * otherwise `*field` is set to the name of the first offending field, NULL with BQ_OK and BQ_E_ARG.
  */
 bq_status bq_pack_config_validate(const bq_pack_config *config, const char **field);
 
 /**
  * Sets or reads one integer field by its name, for example "cell_ov_mv" (every field above except
- * `separate_paths` and `soc`).
- * BQ_OK; BQ_E_ARG (null pointer or no such field); BQ_E_RANGE (outside the field's own range; nothing
- * changed). Contradictions between
- * fields are found by bq_pack_config_validate().
+ * `separate_paths` and `soc`). BQ_OK; BQ_E_ARG (null pointer or no such field); BQ_E_RANGE (outside the
+ * field's own range; nothing changed). Contradictions between fields are found by bq_pack_config_validate().
  */
 bq_status bq_pack_config_set(bq_pack_config *config, const char *name, int32_t value);
 bq_status bq_pack_config_get(const bq_pack_config *config, const char *name, int32_t *value);
@@ -269,20 +256,16 @@ bq_status bq_pack_config_get(const bq_pack_config *config, const char *name, int
 const char *bq_pack_config_field(uint16_t n);
 
 /** Validates and copies the configuration, state "init", nothing recorded. The statuses of
- *  bq_pack_config_validate(); BQ_E_ARG
- *  if `p` is NULL. After an error `*p` is unchanged. */
+ *  bq_pack_config_validate(); BQ_E_ARG if `p` is NULL. After an error `*p` is unchanged. */
 bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config);
 
 /**
  * One control step. `s` is the present picture, NULL = none yet; its counts must equal the configured ones,
- * otherwise no module is judged
- * by it. `now_ms` may wrap; two steps must lie less than 2^32 ms apart. `*a` is filled completely; it holds
- * until the next step.
- * Never blocks, never fails, calls nothing; its cost grows linearly with the cells.
- * `p`, `in` and `a` must not be NULL; the step does nothing if one is, except that a given `*a` is set to
- * everything off.
- * The pack's share of PL-TSD-03, PL-UVLO-04, PL-SLEEP-07, PL-SEQ-08-06, PL-SEQ-10-01, PL-SEQ-10-07,
- * PL-ELEC-14.
+ * otherwise no module is judged by it. `now_ms` may wrap; two steps must lie less than 2^32 ms apart. `*a` is
+ * filled completely; it holds until the next step. Never blocks, never fails, calls nothing; its cost grows
+ * linearly with the cells. `p`, `in` and `a` must not be NULL; the step does nothing if one is, except that a
+ * given `*a` is set to everything off. The pack's share of PL-TSD-03, PL-UVLO-04, PL-SLEEP-07, PL-SEQ-08-06,
+ * PL-SEQ-10-01, PL-SEQ-10-07, PL-ELEC-14.
  */
 void bq_pack_step(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t now_ms, bq_action *a);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file soc.h
- * State of charge for display: a start value from the open-circuit voltage at rest, then coulomb counting.
- * No protection decision uses it. Integers only.
+ * State of charge for display: a start value from the open-circuit voltage at rest, then coulomb counting. No
+ * protection decision uses it. Integers only.
  */
 #ifndef BQHOST_SOC_H
 #define BQHOST_SOC_H
@@ -50,15 +50,13 @@ void bq_soc_init(bq_soc *s);
 
 /**
  * Advances by `dt_ms`. `known` says whether `current_ma` (positive charges) is measured and fresh; `cell_mv`
- * is the mean cell
- * voltage, 0 = unknown. While not valid and after rest_ms of rest with a known cell voltage, the start value
- * is taken from
- * the table (linear between points, held at its ends). While valid, charge is added by the trapezoid of the
- * last two currents and
- * kept within 0..capacity; a step of more than a day counts as unknown. Never blocks, never fails.
+ * is the mean cell voltage, 0 = unknown. While not valid and after rest_ms of rest with a known cell voltage,
+ * the start value is taken from the table (linear between points, held at its ends). While valid, charge is
+ * added by the trapezoid of the last two currents and kept within 0..capacity; a step of more than a day
+ * counts as unknown. Never blocks, never fails.
  */
-void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma, uint16_t
-cell_mv);
+void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma,
+                 uint16_t cell_mv);
 
 /** State of charge in permille, 0..1000, rounded to the nearest; -1 while not valid. */
 int16_t bq_soc_permille(const bq_soc *s, const bq_soc_config *c);

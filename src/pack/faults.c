@@ -4,12 +4,13 @@
 
 typedef struct fault_rule {
     const char *name;
-    uint8_t rank;         /* 0 = shown first */
-    bool stops_charge;    /* with separate paths; with one contactor every fault stops both */
+    uint8_t rank;      /* 0 = shown first */
+    bool stops_charge; /* with separate paths; with one contactor every fault stops both */
     bool stops_discharge;
-    bool latched;         /* clears only while the request is off */
+    bool latched; /* clears only while the request is off */
 } fault_rule;
 
+/* clang-format off */
 static const fault_rule rules[BQ_FAULT_COUNT] = {
     /*                           name           rank charge discharge latched */
     [BQ_FAULT_CHIP] =          { "chip",           0, true,  true,  false },
@@ -30,6 +31,7 @@ static const fault_rule rules[BQ_FAULT_COUNT] = {
     [BQ_FAULT_CONFIG] =        { "config",        15, true,  true,  false },
     [BQ_FAULT_IMBALANCE] =     { "imbalance",     16, true,  true,  false },
 };
+/* clang-format on */
 
 const char *bq_pack_fault_name(bq_pack_fault fault)
 {
