@@ -111,6 +111,8 @@ typedef struct sim_pl_reg {
 
 /** The row of any address 0x00..0xff; reserved addresses share rows. */
 const sim_pl_reg *sim_pl_reg_at(uint8_t address);
+/** Groups 1 and 2 as after a reset. */
+void sim_pl_reg_reset(sim_pl_dev *d);
 uint8_t sim_pl_reg_keep(const sim_pl *s, const sim_pl_reg *r);
 uint8_t sim_pl_reg_legal(const sim_pl *s, const sim_pl_reg *r);
 

@@ -3,8 +3,6 @@
  * judged, nor is what they leave behind in a device until the host had time to notice. */
 #include "sim_pl536_internal.h"
 
-#define GRACE (SIM_PL_S)
-
 void sim_pl_judge(sim_pl *s, const sim_pl_dev *d, const char *id, const char *text)
 {
     if (!s->exempt) {
@@ -19,28 +17,7 @@ void sim_pl_judge_state(sim_pl *s, const sim_pl_dev *d, const char *id, const ch
     }
 }
 
-/* ---- packets as the host meant them
- * ------------------------------------------------------------------------- */
-
-static uint64_t addresses_of(uint8_t first)
-{
-    unsigned address = first >> 1;
-
-    return address == ADDR_BROADCAST ? UINT64_MAX : 1ull << (address & 0x3fu);
-}
-
-/* Remembers for whom the host holds a key, so that a key lost on the bus is not called a missing one. */
-static void note_key(sim_pl *s, const uint8_t *tx, size_t bits)
-{
-    uint64_t meant = addresses_of(tx[0]);
-
-    s->host_had_key = s->host_key;
-    if (bits >= 24 && tx[1] == REG_SHDW_CTRL && tx[2] == 0x35) {
-        s->host_key |= meant;
-    } else {
-        s->host_key &= ~meant;
-    }
-}
+/* ---- packets as the host meant them -------------------------------------------------------------------- */
 
 /* Addresses given before a RESET of the whole stack are stale, wherever that RESET got to. */
 static void note_reset(sim_pl *s, const uint8_t *tx, size_t bits)
@@ -76,7 +53,6 @@ void sim_pl_judge_host(sim_pl *s, const uint8_t *tx, size_t bits)
         sim_pl_judge(s, NULL, "PL-PKT-01", "bit 7 of the first byte set");
     }
     if ((tx[0] & 1) != 0 && bits >= 16) {
-        note_key(s, tx, bits);
         note_reset(s, tx, bits);
     }
 }
@@ -233,10 +209,9 @@ static void judge_group3(sim_pl *s, const sim_pl_dev *d, uint8_t reg, uint8_t va
 void sim_pl_judge_write(sim_pl *s, const sim_pl_dev *d, uint8_t reg, uint8_t value, bool key, bool broadcast)
 {
     const sim_pl_reg *r = sim_pl_reg_at(reg);
-    uint64_t meant = broadcast ? UINT64_MAX : 1ull << sim_pl_address(d);
 
     judge_access(s, d, r, value);
-    if (r->group == 3 && !key && (s->host_had_key & meant) == 0) {
+    if (r->group == 3 && !key) {
         sim_pl_judge_state(s, d, "PL-G3-02", "group-3 register written without the key");
     } else if (r->group == 3) {
         judge_group3(s, d, reg, value);

@@ -76,10 +76,9 @@ void sim_pl_reset_leave(sim_pl *s, sim_pl_dev *d)
     d->reset_end = SIM_PL_NEVER;
     d->power = SIM_PL_POWER_ON;
     d->drdy = !s->options.amb78_drdy_zero;
-    d->reg[REG_ALERT] = sim_pl_reg_at(REG_ALERT)->reset;
-    d->reg[REG_FAULT] = sim_pl_reg_at(REG_FAULT)->reset;
+    sim_pl_reg_reset(d);
     if (d->by_command && s->options.amb54_reset_no_por) {
-        d->reg[REG_FAULT] = 0;
+        d->reg[REG_FAULT] &= (uint8_t)~FA_POR;
     }
     sim_pl_eprom_load(s, d);
     sim_pl_tsd_update(s, d);

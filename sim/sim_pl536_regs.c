@@ -76,6 +76,15 @@ const sim_pl_reg *sim_pl_reg_at(uint8_t address)
     return &table[low];
 }
 
+void sim_pl_reg_reset(sim_pl_dev *d)
+{
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        if (table[i].group == 1 || table[i].group == 2) {
+            d->reg[table[i].address] = table[i].reset;
+        }
+    }
+}
+
 uint8_t sim_pl_reg_keep(const sim_pl *s, const sim_pl_reg *r)
 {
     if (s->options.variant_a && r->address == REG_FUNCTION) {

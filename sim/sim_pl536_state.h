@@ -77,9 +77,7 @@ struct sim_pl {
     uint64_t last_packet; /**< start of the last packet */
     uint32_t spi_hz;
     int spi_mode;
-    uint32_t generation;   /**< counts broadcast RESETs: addresses of an older one are stale */
-    uint64_t host_had_key; /**< host_key before the present packet */
-    uint64_t host_key;     /**< addresses for which the host, as it meant its packets, holds a fresh key */
+    uint32_t generation; /**< counts broadcast RESETs: addresses of an older one are stale */
     uint64_t rng;
     sim_pl_options options;
     bool link_broken[SIM_PL_MAX_DEVICES];

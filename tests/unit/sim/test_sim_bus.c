@@ -99,6 +99,31 @@ static void test_lost_key_is_not_judged(void)
     TEST_ASSERT_EQUAL_HEX8(0x2c, sim_pl_peek(&s, 1, 0x42));
 }
 
+/* What a lost write leaves behind is not the host's doing; after a second, and in another device, it is. */
+static void test_what_a_lost_write_leaves_is_not_judged_at_once(void)
+{
+    for (unsigned k = 1; k <= 2; k++) {
+        sim_pl_bus_fault(&s)->drop_packets = k == 1;
+        put(k, 0x33, 0x1e);
+        put(k, 0x3a, 0x35);
+        put(k, 0x40, 0x40);
+    }
+    put(1, 0x34, 0x01);
+    TEST_ASSERT_EQUAL(SIM_PL_LOCKED, sim_pl_get_mode(&s, 1));
+    TEST_ASSERT_EQUAL(0, sim_pl_misuse(&s)->count);
+    put(2, 0x34, 0x01);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-ADC-12"));
+    sim_misuse_clear(sim_pl_misuse(&s));
+    sim_pl_bus_fault(&s)->drop_packets = 1;
+    put(3, 0x33, 0x1e);
+    put(3, 0x3a, 0x35);
+    put(3, 0x40, 0x40);
+    sim_pl_advance(&s, SIM_PL_S);
+    put(3, 0x34, 0x01);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-ADC-12"));
+    sim_misuse_clear(sim_pl_misuse(&s));
+}
+
 static void test_dead_stuck_late_and_short(void)
 {
     struct sim_bus_fault *f = sim_pl_bus_fault(&s);
@@ -180,6 +205,7 @@ static void test_hook_answers_or_falls_through(void)
     sim_pl_bus_fault(&s)->hook_ctx = &mode;
     (void)get(1, 0x3b);
     TEST_ASSERT_EQUAL_HEX8(0x5a, rx[0]);
+    TEST_ASSERT_EQUAL(1, driven[4]);
     mode = 2;
     (void)get(1, 0x3b);
     TEST_ASSERT_EQUAL_HEX8(sim_pl_peek(&s, 1, 0x00), rx[3]);
@@ -273,6 +299,7 @@ static void test_strict_timing(void)
     TEST_ASSERT_EQUAL(0, sim_pl_misuse(&s)->count);
     sim_pl_spi_timed(&s, tx, rx, driven, 5, &bad);
     TEST_ASSERT_EQUAL(5, sim_pl_misuse(&s)->count);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-SPI-04"));
     sim_pl_set_spi_clock(&s, 250000);
     sim_misuse_clear(sim_pl_misuse(&s));
     sim_pl_spi(&s, tx, rx, driven, 5);
@@ -281,6 +308,10 @@ static void test_strict_timing(void)
     sim_pl_advance(&s, 3 * SIM_PL_US);
     sim_pl_spi(&s, tx, rx, driven, 5);
     TEST_ASSERT_EQUAL(0, sim_pl_misuse(&s)->count);
+    sim_pl_advance(&s, 3 * SIM_PL_US - 1);
+    sim_pl_spi(&s, tx, rx, driven, 5);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-SPI-04"));
+    sim_misuse_clear(sim_pl_misuse(&s));
     sim_pl_set_spi_mode(&s, 3);
     sim_pl_spi_timed(&s, tx, rx, driven, 5, &good);
     TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-SPI-01"));
@@ -293,6 +324,7 @@ int main(void)
     RUN_TEST(test_lost_device_hides_those_above);
     RUN_TEST(test_flips_are_seen_and_not_judged);
     RUN_TEST(test_lost_key_is_not_judged);
+    RUN_TEST(test_what_a_lost_write_leaves_is_not_judged_at_once);
     RUN_TEST(test_dead_stuck_late_and_short);
     RUN_TEST(test_wrong_device_break_and_brownout);
     RUN_TEST(test_flip_rate);

@@ -226,6 +226,8 @@ static int cb_in_sleep(void)
 {
     (void)balancing_s();
     put(1, 0x31, 0x04);
+    put(1, 0x32, 0x00);
+    put(1, 0x32, 0x03);
     return sim_pl_cb(&s, 1);
 }
 
@@ -365,6 +367,29 @@ static void test_noise_is_seeded_and_has_the_size_asked_for(void)
     TEST_ASSERT_EQUAL_MEMORY(first[0], first[1], sizeof first[0]);
 }
 
+static void test_offsets_are_fixed_and_within_their_bound(void)
+{
+    sim_pl_options offset = {.seed = 9, .cell_offset_uv_max = 5000.0};
+    int lowest = 99999, highest = 0;
+
+    ready(&offset);
+    put(1, 0x30, 0x05);
+    for (int run = 0; run < 2; run++) {
+        put(1, 0x34, 0x01);
+        sim_pl_advance(&s, SIM_PL_MS);
+        for (unsigned cell = 0; cell < 6; cell++) {
+            int code = reg(1, 3 + 2 * cell) << 8 | reg(1, 4 + 2 * cell);
+
+            lowest = code < lowest ? code : lowest;
+            highest = code > highest ? code : highest;
+            TEST_ASSERT_INT_WITHIN(14, 9437, code); /* 5 mV */
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(lowest + 5, highest);
+    TEST_ASSERT_LESS_THAN(9437, lowest);
+    TEST_ASSERT_GREATER_THAN(9437, highest);
+}
+
 static void test_bad_arguments_are_refused(void)
 {
     static const sim_pl_options bad[] = {
@@ -384,7 +409,9 @@ static void test_bad_arguments_are_refused(void)
     TEST_ASSERT_EQUAL(-1, sim_pl_set_otp(&s, 1, 0x4c, 1));
     TEST_ASSERT_EQUAL(-1, sim_pl_set_ts_ratio(&s, 1, 3, 0.1));
     TEST_ASSERT_EQUAL(-1, sim_pl_peek(&s, 3, 0));
+    sim_pl_set_cell(&s, 1, 2, 3.5);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.6, sim_pl_cell(&s, 1, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.5, sim_pl_cell(&s, 1, 2));
 }
 
 static void test_misuse_book_counts_beyond_what_it_keeps(void)
@@ -454,6 +481,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_each_option_changes_what_it_names);
     RUN_TEST(test_noise_is_seeded_and_has_the_size_asked_for);
+    RUN_TEST(test_offsets_are_fixed_and_within_their_bound);
     RUN_TEST(test_bad_arguments_are_refused);
     RUN_TEST(test_misuse_book_counts_beyond_what_it_keeps);
     RUN_TEST(test_waveform_file_reports_what_could_not_be_written);

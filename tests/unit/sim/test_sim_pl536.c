@@ -211,12 +211,17 @@ static void test_lock_up(void)
     TEST_ASSERT_EQUAL(SIM_PL_ACTIVE, sim_pl_get_mode(&s, 1));
 }
 
-/* proves: PL-OTP-02, PL-OTP-12, PL-AMB-105, PL-AMB-111 */
+/* proves: PL-OTP-02, PL-OTP-03, PL-OTP-12, PL-AMB-105, PL-AMB-111 */
 static void test_programming_once(void)
 {
     test_configuration_with_key();
     sim_misuse_clear(sim_pl_misuse(&s));
     sim_pl_set_vpp(&s, 1, true);
+    sim_pl_set_vbat(&s, 1, 19.99);
+    expect_misuse("PL-OTP-03", "033f9179");
+    sim_pl_advance(&s, 2 * SIM_PL_MS);
+    TEST_ASSERT_EQUAL_HEX8(0x00, sim_pl_otp(&s, 1, 0x42));
+    sim_pl_set_vbat(&s, 1, 20.0);
     spi("033f9179");
     sim_pl_advance(&s, 1500 * SIM_PL_US);
     sim_pl_set_vpp(&s, 1, false);
@@ -249,26 +254,104 @@ static void test_damage(void)
     TEST_ASSERT_EQUAL_HEX8(0xe0, sim_pl_peek(&s, 1, 0x20));
 }
 
-/* An open inner wire leaves the sum alone, balancing makes the reading collapse; a top wire takes from the
+static void expect_seen(double v1, double v2, double v3, double v4, double v5, double v6)
+{
+    const double want[6] = {v1, v2, v3, v4, v5, v6};
+
+    put(1, 0x30, 0x05);
+    put(1, 0x34, 0x01);
+    sim_pl_advance(&s, SIM_PL_MS);
+    for (int i = 0; i < 6; i++) {
+        int code = sim_pl_peek(&s, 1, (uint8_t)(3 + 2 * i)) << 8 | sim_pl_peek(&s, 1, (uint8_t)(4 + 2 * i));
+
+        TEST_ASSERT_INT_WITHIN(1, (int)(want[i] * 16383.0 / 6.25 + 0.5), code);
+    }
+}
+
+static void balance(unsigned mask)
+{
+    put(1, 0x33, 0x1e);
+    put(1, 0x32, 0x00);
+    put(1, 0x32, mask);
+    TEST_ASSERT_EQUAL_HEX8(mask, sim_pl_cb(&s, 1));
+}
+
+/* An open inner wire leaves the sum alone; balancing makes the reading collapse; an end wire takes from the
  * sum. */
 static void test_open_wire(void)
 {
-    static const double open_3[6] = {3.6, 3.6, 1.8, 5.4, 3.6, 3.6};
+    static const double cells[6] = {1.0, 1.2, 1.4, 1.6, 1.8, 2.0};
 
+    put(0, 0x3b, 0x81);
+    sim_pl_set_cells(&s, 1, cells);
     sim_pl_set_wire(&s, 1, 3, true);
-    for (int i = 0; i < 6; i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, open_3[i], s.dev[0].seen[i]);
-    }
-    spi("013b0102");
-    spi("03331e21");
-    put(1, 0x32, 0x04);
-    TEST_ASSERT_EQUAL_HEX8(0x04, sim_pl_cb(&s, 1));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, s.dev[0].seen[2]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 7.2, s.dev[0].seen[3]);
+    expect_seen(1.0, 1.2, 0.7, 2.3, 1.8, 2.0);
+    balance(0x04);
+    expect_seen(1.0, 1.2, 0.0, 3.0, 1.8, 2.0);
+    balance(0x08);
+    expect_seen(1.0, 1.2, 3.0, 0.0, 1.8, 2.0);
+    balance(0x0c);
+    expect_seen(1.0, 1.2, 1.5, 1.5, 1.8, 2.0);
+    balance(0x02);
+    expect_seen(1.0, 1.2, 0.7, 2.3, 1.8, 2.0);
+    put(1, 0x32, 0x00);
+    sim_pl_set_wire(&s, 1, 2, true);
+    expect_seen(1.0, 0.6, 0.7, 2.9, 1.8, 2.0);
+    balance(0x02);
+    expect_seen(1.0, 0.0, 4.2 * 1.4 / 3.0, 4.2 * 1.6 / 3.0, 1.8, 2.0);
+    sim_pl_advance(&s, 30 * SIM_PL_S);
+    expect_seen(1.0, 0.6, 0.7, 2.9, 1.8, 2.0);
+    sim_pl_set_wire(&s, 1, 2, false);
     sim_pl_set_wire(&s, 1, 3, false);
+    expect_seen(1.0, 1.2, 1.4, 1.6, 1.8, 2.0);
+}
+
+static void test_open_end_wires(void)
+{
+    static const double cells[6] = {1.0, 1.2, 1.4, 1.6, 1.8, 2.0};
+
+    put(0, 0x3b, 0x81);
+    sim_pl_set_cells(&s, 1, cells);
+    sim_pl_set_wire(&s, 1, 0, true);
+    expect_seen(0.5, 1.2, 1.4, 1.6, 1.8, 2.0);
     sim_pl_set_wire(&s, 1, 6, true);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.6, s.dev[0].seen[3]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.8, s.dev[0].seen[5]);
+    expect_seen(0.5, 1.2, 1.4, 1.6, 1.8, 1.0);
+    sim_pl_set_wire(&s, 1, 0, false);
+    balance(0x20);
+    expect_seen(1.0, 1.2, 1.4, 1.6, 1.8, 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 9.0, sim_pl_vbat(&s, 1));
+}
+
+/* The comparators see what the converter sees. */
+static void test_open_wire_trips_the_comparators(void)
+{
+    put(0, 0x3b, 0x81);
+    key_put(1, 0x42, 0x2c);
+    key_put(1, 0x44, 0x15);
+    TEST_ASSERT_EQUAL_HEX8(0x00, sim_pl_peek(&s, 1, 0x22));
+    sim_pl_set_wire(&s, 1, 3, true);
+    TEST_ASSERT_EQUAL_HEX8(0x08, sim_pl_peek(&s, 1, 0x22));
+    TEST_ASSERT_EQUAL_HEX8(0x04, sim_pl_peek(&s, 1, 0x23));
+}
+
+/* proves: PL-SLEEP-02 */
+static void test_sleep_keeps_the_flags_of_unlatched_comparators(void)
+{
+    put(0, 0x3b, 0x81);
+    sim_pl_set_cell(&s, 1, 1, 0.5);
+    TEST_ASSERT_EQUAL_HEX8(0x3e, sim_pl_peek(&s, 1, 0x22));
+    TEST_ASSERT_EQUAL_HEX8(0x01, sim_pl_peek(&s, 1, 0x23));
+    put(1, 0x31, 0x04);
+    put(1, 0x21, 0x00);
+    TEST_ASSERT_EQUAL_HEX8(0x0b, sim_pl_peek(&s, 1, 0x21));
+    TEST_ASSERT_EQUAL_HEX8(0x00, sim_pl_peek(&s, 1, 0x22));
+    TEST_ASSERT_EQUAL_HEX8(0x00, sim_pl_peek(&s, 1, 0x23));
+    put(1, 0x21, 0x0a);
+    TEST_ASSERT_EQUAL_HEX8(0x01, sim_pl_peek(&s, 1, 0x21));
+    put(1, 0x31, 0x00);
+    sim_pl_advance(&s, 200 * SIM_PL_US);
+    TEST_ASSERT_EQUAL_HEX8(0x03, sim_pl_peek(&s, 1, 0x21));
+    TEST_ASSERT_EQUAL_HEX8(0x3e, sim_pl_peek(&s, 1, 0x22));
 }
 
 /* proves: PL-UVLO-01, PL-POR-01, PL-POR-03, PL-NUM-40 */
@@ -369,6 +452,9 @@ int main(void)
     RUN_TEST(test_programming_once);
     RUN_TEST(test_damage);
     RUN_TEST(test_open_wire);
+    RUN_TEST(test_open_end_wires);
+    RUN_TEST(test_open_wire_trips_the_comparators);
+    RUN_TEST(test_sleep_keeps_the_flags_of_unlatched_comparators);
     RUN_TEST(test_supply_thresholds);
     RUN_TEST(test_judge);
     RUN_TEST(test_judge_of_state);
