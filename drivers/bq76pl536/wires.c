@@ -56,7 +56,10 @@ static uint8_t explain_pairs(const bq76pl536_device *dev, unsigned cells, const 
         }
         int low = (int)mv[i] - (int)dev->cell_mv[i];
         int high = (int)mv[i + 1u] - (int)dev->cell_mv[i + 1u];
-        if (magnitude(low) > limit && magnitude(high) > limit && (low < 0) != (high < 0) &&
+        /* coming closer together is a wire that was mended, with references taken while it was open */
+        bool apart = magnitude((int)mv[i] - (int)mv[i + 1u]) >
+                     magnitude((int)dev->cell_mv[i] - (int)dev->cell_mv[i + 1u]);
+        if (apart && magnitude(low) > limit && magnitude(high) > limit && (low < 0) != (high < 0) &&
             magnitude(low + high) <= PAIR_MV + magnitude(low) / 8) {
             wires |= 2u << i;
         }
