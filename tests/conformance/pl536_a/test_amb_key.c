@@ -79,6 +79,13 @@ static void test_reads_discarded_writes_and_other_devices_leave_the_key(void)
     bench_write(0, 0x48, 0xfd);
     TEST_ASSERT_EQUAL_HEX8(0x00, bench_read(0, 0x48));
     TEST_ASSERT_EQUAL_HEX8(0x00, bench_read(0, 0x3a));
+    bench_write(0, 0x3a, 0x35);
+    expect("set dev.1.supply off", "ok"); /* nor does it outlive a power-on reset */
+    expect("advance 1ms", "ok");
+    expect("set dev.1.supply on", "ok");
+    expect("advance 57ms", "ok");
+    bench_write(0, 0x48, 0xfd);
+    TEST_ASSERT_EQUAL_HEX8(0x00, bench_read(0, 0x48));
 }
 
 /* proves: PL-AMB-100 */
