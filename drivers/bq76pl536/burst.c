@@ -158,7 +158,7 @@ bq_status pl_take_burst(bq76pl536 *d, unsigned n, uint32_t t_ms)
     }
     take_gpai(d, dev, bq76pl536_burst_word(data, BQ76PL536_BURST_GPAI));
     take_cells(d, n, dev, data);
-    for (unsigned i = 0; i < d->config.sensors; i++) {
+    for (unsigned i = 0; i < d->config.sensors && i < 2u; i++) {
         take_sensor(d, dev, i, bq76pl536_burst_word(data, (uint8_t)(BQ76PL536_BURST_TS1 + i)));
     }
     dev->t_ms = t_ms;

@@ -128,6 +128,7 @@ bq_status pl_job_discover(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_BEGIN(f)
     d->found = 0;
     d->crc = true;
+    d->height = d->config.devices;
     d->diagnosis.broken_hop = 0;
     d->diagnosis.extra_device = false;
     d->diagnosis.alert_silent = false;
@@ -166,6 +167,7 @@ bq_status pl_job_discover(bq76pl536 *d, bq76pl536_frame *f)
                 SEQ_TRY(d, f, PL_JOB_HEIGHT, f->i, 0, 0);
             }
             d->found = f->i;
+            d->height = f->i; /* what lies above may disturb those below */
         }
     }
     for (f->tries = 0; f->tries < PL_TRIES && d->found == d->config.devices; f->tries++) { /* 02-08 */

@@ -14,6 +14,7 @@ bq_status pl_job_adopt(bq76pl536 *d, bq76pl536_frame *f)
         }
     }
     if (f->val != 0u) {
+        pl_invalidate(dev, BQ_Q_COMM, 0);
         dev->faults |= BQ_F_RESET;
         dev->flags &= (uint16_t)~(PL_DEV_CB_TIME | PL_DEV_TSD);
         dev->faults &= (uint16_t)~BQ_F_DIE_TEMP;
@@ -54,13 +55,13 @@ static void end_stack(bq76pl536 *d, unsigned n)
 bq_status pl_job_relocate(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
-    for (f->n = f->dev; f->n <= d->config.devices; f->n++) {
-        pl_invalidate(pl_dev(d, f->n), BQ_Q_COMM, BQ_F_COMM);
+    for (f->n = f->dev; f->n <= d->height; f->n++) {
         SEQ_CALL(d, f, PL_JOB_READ, f->n, BQ76PL536_ADDRESS_CONTROL, 1);
         if (d->result == BQ_OK && pl_data(d)[0] == (BQ76PL536_ADDRESS_AR | f->n)) {
             SEQ_TRY(d, f, PL_JOB_ADOPT, f->n, 0, 0);
             continue;
         }
+        pl_invalidate(pl_dev(d, f->n), BQ_Q_COMM, BQ_F_COMM);
         if (d->config.crc_off) {
             d->crc = true; /* a device that was reset is back at its EPROM setting (13-09) */
         }
@@ -78,9 +79,13 @@ bq_status pl_job_relocate(bq76pl536 *d, bq76pl536_frame *f)
         }
         SEQ_TRY(d, f, PL_JOB_ADOPT, f->n, 0, 1);
     }
-    d->found = d->config.devices;
-    d->diagnosis.broken_hop = 0;
+    d->found = d->height;
     d->probes = 0;
+    if (d->height < d->config.devices) {
+        d->diagnosis.broken_hop = (uint8_t)(d->height + 1u);
+        return BQ_OK;
+    }
+    d->diagnosis.broken_hop = 0;
     SEQ_SEND(f, pl_send_read(d, BQ76PL536_ADDR_NONE, BQ76PL536_DEVICE_STATUS, 1)); /* 13-07 */
     if (d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) == BQ_OK && pl_data(d)[0] != 0u) {
         SEQ_TRY(d, f, PL_JOB_BRINGUP, 0, 0, 0);

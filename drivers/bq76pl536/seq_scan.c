@@ -177,7 +177,7 @@ bq_status pl_job_aftercare(bq76pl536 *d, bq76pl536_frame *f)
     if (f->reg != 0u && f->reg <= d->found) {
         d->probes = 0;
         SEQ_TRY(d, f, PL_JOB_RELOCATE, f->reg, 0, 0);
-    } else if (d->found < d->config.devices && d->now_ms - d->probe_ms >= PL_PROBE_MS) {
+    } else if (d->found < d->height && d->now_ms - d->probe_ms >= PL_PROBE_MS) {
         SEQ_TRY(d, f, PL_JOB_RELOCATE, d->found + 1u, 0, 0);
     }
     if (d->found == 0u && d->probes > PL_TRIES) {

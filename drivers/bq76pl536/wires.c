@@ -17,7 +17,8 @@ static int magnitude(int value)
 /* A cell with a last good value: it was valid, or its wire has been suspicious since. */
 static bool has_reference(const bq76pl536_device *dev, unsigned i)
 {
-    return (dev->flags & PL_DEV_VALID) != 0u && (dev->cell_quality[i] & (BQ_Q_VALID | BQ_Q_OPEN_WIRE)) != 0u;
+    return (dev->flags & PL_DEV_VALID) != 0u && dev->cell_mv[i] != 0u &&
+           (dev->cell_quality[i] & (BQ_Q_VALID | BQ_Q_OPEN_WIRE)) != 0u;
 }
 
 static bool moved(const bq76pl536_device *dev, unsigned i, const uint16_t *mv, int limit)

@@ -135,7 +135,8 @@ bq_status bq76pl536_start(bq76pl536 *d);
  * One update (PL-SEQ-06, -07): outputs off and settled if any was on, convert everywhere, one burst per device, then what the
  * bursts ask for: service of flags (PL-SEQ-08, -15), lock-up recovery (-05), lost devices (-13), and every scrub_period_ms the
  * configuration of one device. With nothing to do: N + 1 packets, 23 N + 4 bytes.
- * Balancing outputs stay off until the next apply (PL-SEQ-10-04).
+ * Balancing outputs stay off until the next apply (PL-SEQ-10-04). A device that was lost in service is looked for in every
+ * scan (70 ms apart) and taken in again by itself; one that bring-up did not find needs another start.
  * Ends with BQ_OK when at least one device gave fresh readings: look at the quality of each. BQ_E_NO_ANSWER: none did.
  * BQ_E_BUS, BQ_E_TIMEOUT: the start could not be sent, the old picture stays.
  */

@@ -58,6 +58,7 @@ typedef struct bq76pl536 {
     uint8_t probes;      /* looks in vain since the last device was lost */
     uint8_t attempt;     /* of address discovery */
     uint8_t failed_at;   /* device at which the last discovery pass ended */
+    uint8_t height;      /* where the stack ends by the last discovery: nothing above is touched until the next one */
     bool crc;            /* present framing */
     bool sent;           /* this poll started its packet */
     bool reading;        /* the picture is being renewed */

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The bq_afe interface over one instance. */
+#include "x0_internal.h"
+
+static bq_status x0_afe_start(void *ctx)
+{
+    return bq769x0_begin_start(ctx);
+}
+
+static bq_status x0_afe_scan(void *ctx)
+{
+    return bq769x0_begin_scan(ctx);
+}
+
+static bq_status x0_afe_poll(void *ctx, uint32_t *wait_us)
+{
+    return bq769x0_poll(ctx, wait_us);
+}
+
+static bq_status x0_afe_sample(void *ctx, bq_sample *s)
+{
+    return bq769x0_sample(ctx, s);
+}
+
+static bq_status x0_afe_apply(void *ctx, const bq_action *action)
+{
+    return bq769x0_begin_apply(ctx, action);
+}
+
+static bq_status x0_afe_self_test(void *ctx)
+{
+    return bq769x0_begin_self_test(ctx);
+}
+
+static bq_status x0_afe_ship(void *ctx)
+{
+    return bq769x0_begin_ship(ctx);
+}
+
+static uint8_t modules_found(void *ctx)
+{
+    const bq769x0 *d = ctx;
+    return d->state == X0_STATE_READY ? 1u : 0u;
+}
+
+static const bq_link_stats *stats(void *ctx)
+{
+    const bq769x0 *d = ctx;
+    return &d->stats;
+}
+
+bq_afe bq769x0_afe(bq769x0 *d)
+{
+    static const bq_afe_ops ops = {x0_afe_start,     x0_afe_scan, x0_afe_poll,  x0_afe_sample, x0_afe_apply,
+                                   x0_afe_self_test, x0_afe_ship, x0_afe_start, modules_found, stats};
+    bq_afe afe = {&ops, d};
+    return afe;
+}
