@@ -155,10 +155,11 @@ typedef enum bq76pl536_adct {
 bq_status bq76pl536_function_config(bq76pl536_adct adct, uint8_t cells, bool brick, bool reg50,
                                     uint8_t *value);
 
-/** Nominal and worst duration of a conversion of `channels` 1..9 (PL-CONV-10, -12, PL-SEQ-06-03); the worst
- * case holds the +10 % of the converter, the wake-up in automatic mode and 2 us of stack skew, rounded up.
- * Either pointer may be NULL.
- *  BQ_E_CONFIG: automatic mode with another time than 3 us, which locks the part up (PL-ADC-12). */
+/** Nominal and worst duration of a conversion of `channels` 1..9 (PL-CONV-10, -12, PL-SEQ-06-03). The worst case
+ *  holds the +10 % of the converter, 6 us per channel also at the 3 us setting (PL-AMB-62), the wake-up in automatic
+ *  mode and 2 us of stack skew, rounded up. Either pointer may be NULL.
+ *  BQ_E_ARG: no such number of channels or setting; BQ_E_CONFIG: automatic mode with another time than 3 us, which
+ *  locks the part up (PL-ADC-12). */
 bq_status bq76pl536_conversion_us(uint8_t channels, bq76pl536_adct adct, bool adc_on, uint16_t *nominal_us,
                                   uint16_t *worst_us);
 

@@ -194,12 +194,13 @@ bq_status bq76pl536_conversion_us(uint8_t channels, bq76pl536_adct adct, bool ad
     if (!adc_on && adct != BQ76PL536_ADCT_3US) {
         return BQ_E_CONFIG;
     }
-    unsigned cycle = (channels + 1u) * (3u << (unsigned)adct);
+    unsigned slots = channels + 1u;
+    unsigned slowest_us = adct == BQ76PL536_ADCT_3US ? 6u : 3u << (unsigned)adct; /* PL-AMB-62 */
     if (nominal_us != NULL) {
-        *nominal_us = (uint16_t)(cycle + (adc_on ? 0u : 500u));
+        *nominal_us = (uint16_t)(slots * (3u << (unsigned)adct) + (adc_on ? 0u : 500u));
     }
     if (worst_us != NULL) {
-        *worst_us = (uint16_t)((cycle * 11u + 9u) / 10u + (adc_on ? 0u : 525u) + 2u);
+        *worst_us = (uint16_t)((slots * slowest_us * 11u + 9u) / 10u + (adc_on ? 0u : 525u) + 2u);
     }
     return BQ_OK;
 }

@@ -46,7 +46,8 @@ static bq_status check(bool crc)
 }
 
 /* Every device, start and count there is: built exactly when the range ends within the register map. */
-/* proves: PL-PKT-12, PL-PKT-14, PL-BCAST-02, PL-AMB-09, PL-AMB-10, PL-AMB-11, PL-AMB-14, PL-AMB-17 */
+/* proves: PL-PKT-12, PL-PKT-14, PL-BCAST-02, PL-AMB-09, PL-AMB-10, PL-AMB-11, PL-AMB-14, PL-AMB-17,
+ * PL-VEC-53 */
 static void test_reads_stay_within_the_map_and_never_go_to_all(void)
 {
     static const uint8_t devices[] = {0x00, 0x01, 0x3e, 0x3f, 0x40, 0x80, 0xff};
@@ -84,7 +85,7 @@ static void test_reads_need_room_and_pointers(void)
     TEST_ASSERT_EQUAL_UINT(22, length);
 }
 
-/* proves: PL-ADR-15, PL-AMB-08, PL-AMB-14 */
+/* proves: PL-ADR-15, PL-AMB-08, PL-AMB-14, PL-AMB-30 */
 static void test_writes_refuse_what_must_not_be_sent(void)
 {
     TEST_ASSERT_EQUAL_INT(BQ_E_ARG, bq76pl536_packet_write(tx, 3, 1, 0x30, 0x7d, true, &length));
@@ -276,15 +277,31 @@ static void test_a_burst_that_cannot_be_true_is_refused(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_NO_ANSWER, bq76pl536_burst_check(burst));
 }
 
-/* proves: PL-ADC-01 */
+/* proves: PL-ADC-01, PL-PKT-05, PL-REG-10, PL-REG-11, PL-REG-12, PL-REG-13 */
 static void test_words_are_big_endian_and_in_register_order(void)
 {
-    TEST_ASSERT_EQUAL_HEX16(0x2979, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_GPAI));
-    TEST_ASSERT_EQUAL_HEX16(0x24dd, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_CELL1));
-    TEST_ASSERT_EQUAL_HEX16(0x1eb8, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_CELL1 + 1u));
-    TEST_ASSERT_EQUAL_HEX16(0x2a7e, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_CELL1 + 5u));
-    TEST_ASSERT_EQUAL_HEX16(0x11aa, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_TS1));
-    TEST_ASSERT_EQUAL_HEX16(0x11a6, bq76pl536_burst_word(good_burst, BQ76PL536_BURST_TS2));
+    static const uint16_t words[BQ76PL536_BURST_WORDS] = {0x2979, 0x24dd, 0x1eb8, 0x21ca, 0x24dd,
+                                                          0x25e3, 0x2a7e, 0x11aa, 0x11a6};
+    for (uint8_t i = 0; i < BQ76PL536_BURST_WORDS; i++) {
+        TEST_ASSERT_EQUAL_HEX16(words[i], bq76pl536_burst_word(good_burst, i));
+    }
+    TEST_ASSERT_EQUAL_UINT(0, BQ76PL536_BURST_GPAI);
+    TEST_ASSERT_EQUAL_UINT(1, BQ76PL536_BURST_CELL1);
+    TEST_ASSERT_EQUAL_UINT(7, BQ76PL536_BURST_TS1);
+    TEST_ASSERT_EQUAL_UINT(8, BQ76PL536_BURST_TS2);
+}
+
+/* 8 clocks of 4 us a byte and 3 us between packets. */
+/* proves: PL-TIM-27 */
+static void test_packet_times_at_250_khz(void)
+{
+    static const unsigned reads[][2] = {{1, 163}, {12, 515}, {18, 707}, {19, 739}};
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_write(tx, sizeof tx, 1, 0x30, 0x7d, true, &length));
+    TEST_ASSERT_EQUAL_UINT(131, length * 32u + 3u);
+    for (unsigned i = 0; i < sizeof reads / sizeof reads[0]; i++) {
+        read_request(1, 0, (uint8_t)reads[i][0], true);
+        TEST_ASSERT_EQUAL_UINT(reads[i][1], length * 32u + 3u);
+    }
 }
 
 int main(void)
@@ -303,5 +320,6 @@ int main(void)
     RUN_TEST(test_check_refuses_packets_that_are_no_replies);
     RUN_TEST(test_a_burst_that_cannot_be_true_is_refused);
     RUN_TEST(test_words_are_big_endian_and_in_register_order);
+    RUN_TEST(test_packet_times_at_250_khz);
     return UNITY_END();
 }

@@ -62,7 +62,7 @@ static void test_reset_and_addressing_writes(void)
 }
 
 /* proves: PL-VEC-12, PL-VEC-13, PL-VEC-14, PL-VEC-15, PL-VEC-16, PL-VEC-17, PL-VEC-18, PL-VEC-19, PL-VEC-20,
- * PL-VEC-21, PL-VEC-23, PL-VEC-24, PL-CONV-09 */
+ * PL-VEC-21, PL-VEC-23, PL-VEC-24, PL-CONV-09, PL-AMB-110 */
 static void test_conversion_and_configuration_writes(void)
 {
     expect_write(0x3f, 0x34, 0x01, true, "7f 34 01 8a");
@@ -143,7 +143,7 @@ static void test_programming_has_a_builder_of_its_own(void)
 }
 
 /* proves: PL-VEC-08, PL-VEC-09, PL-VEC-10, PL-VEC-11, PL-VEC-33, PL-VEC-34, PL-VEC-35, PL-VEC-36, PL-VEC-37,
- * PL-PKT-04, PL-PKT-06, PL-CRC-03, PL-AMB-05, PL-SPI-09 */
+ * PL-PKT-04, PL-PKT-06, PL-CRC-03, PL-AMB-05, PL-AMB-13, PL-SPI-09 */
 static void test_short_reads(void)
 {
     expect_read(0x01, 0x3b, 1, true, "02 3b 01 00 00", "81 ba");
