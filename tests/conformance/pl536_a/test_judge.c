@@ -22,7 +22,7 @@ static void test_reads_that_are_undefined(void)
     expect_misuse("PL-PKT-14 PL-PKT-12 PL-AMB-10", 2);
     expect("spi 04 3b 01 00 00 00", "ok -- -- -- 82 c7 --");
     expect_misuse("PL-PKT-04 PL-PKT-12 PL-AMB-11", 2);
-    expect("spi 04 3b 01 00", "ok -- -- -- 82");
+    expect("spi 04 30 01 00", "ok -- -- -- 00");
     expect_misuse("PL-PKT-04 PL-PKT-11", 2);
     expect("spi 7e 00 01 00 00", "ok -- -- -- -- --");
     expect_misuse("PL-BCAST-02 PL-AMB-17", -1);
