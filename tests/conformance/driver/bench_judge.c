@@ -42,6 +42,7 @@ static void judge_read(const bench_packet *p, const char *where)
     TEST_ASSERT_EQUAL_INT_MESSAGE(p->tx[2] + 4, p->n, where);
     TEST_ASSERT_TRUE_MESSAGE(p->tx[1] + p->tx[2] - 1 <= 0x4b, where);
     TEST_ASSERT_TRUE_MESSAGE(p->tx[0] != 0x7e, where);
+    TEST_ASSERT_TRUE_MESSAGE(p->tx[1] != 0x34, where); /* CONV is never polled */
     for (int i = 3; i < p->n; i++) {
         TEST_ASSERT_EQUAL_HEX8_MESSAGE(0x00, p->tx[i], where);
     }

@@ -11,7 +11,7 @@ static void expect_outputs(int devices, int device, unsigned mask)
 }
 
 /* proves: PL-SEQ-10-01, PL-SEQ-10-02, PL-SEQ-10-03, PL-CB-13, PL-CB-14, PL-AMB-82, PL-AMB-84, PL-AMB-85,
- * PL-AMB-88, PL-VEC-30 */
+ * PL-AMB-88, PL-VEC-30, PL-CB-10 */
 static void order_of_the_writes(void)
 {
     for (int device = 1; device <= 3; device++) {
@@ -149,7 +149,8 @@ static void outputs_that_do_not_come_on_are_reported(void)
 }
 
 /* proves: PL-SEQ-11-01, PL-SEQ-11-02, PL-SEQ-11-03, PL-SEQ-11-05, PL-SEQ-11-06, PL-SLEEP-04, PL-SLEEP-09,
- * PL-SLEEP-12, PL-AMB-86, PL-AMB-81, PL-AMB-51, PL-AMB-90, PL-DRDY-05, PL-TS-06, PL-SLEEP-07, PL-GPIO-06 */
+ * PL-SLEEP-12, PL-AMB-86, PL-AMB-81, PL-AMB-51, PL-AMB-90, PL-DRDY-05, PL-TS-06, PL-SLEEP-07, PL-GPIO-06,
+ * PL-AMB-70, PL-ADC-18 */
 static void order_of_sleep_and_wake(void)
 {
     bench_ready(3, NULL);

@@ -25,7 +25,8 @@ static void start(int devices)
 }
 
 /* proves: PL-SEQ-02-01, PL-SEQ-02-02, PL-SEQ-02-03, PL-SEQ-02-04, PL-SEQ-02-05, PL-SEQ-02-07, PL-ADR-11,
- * PL-ADR-12, PL-ADR-13, PL-ADR-06, PL-ADR-16, PL-AMB-31, PL-AMB-26, PL-ADR-05, PL-POR-09, PL-AMB-93 */
+ * PL-ADR-12, PL-ADR-13, PL-ADR-06, PL-ADR-16, PL-AMB-31, PL-AMB-26, PL-ADR-05, PL-POR-09, PL-AMB-93,
+ * PL-TIM-19, PL-AMB-18, PL-AMB-19 */
 static void discovery_grows_by_one_device_per_reset(void)
 {
     static const bench_packet *p[2000];
@@ -70,7 +71,8 @@ static void nothing_may_answer_at_zero_afterwards(void)
     EXPECT_STATUS(BQ_E_EXTRA_DEVICE, bench_start());
 }
 
-/* proves: PL-SEQ-02-10, PL-SEQ-02-09, PL-ALT-09, PL-AMB-28, PL-AMB-33, PL-AMB-54 */
+/* proves: PL-SEQ-02-10, PL-SEQ-02-09, PL-ALT-09, PL-AMB-28, PL-AMB-33, PL-AMB-54, PL-FLT-12, PL-ADR-07,
+ * PL-NUM-42 */
 static void address_and_reset_flags_are_cleared_and_checked(void)
 {
     start(3);
@@ -96,7 +98,7 @@ static void address_and_reset_flags_are_cleared_and_checked(void)
 }
 
 /* proves: PL-SEQ-01-01, PL-SEQ-01-02, PL-SEQ-01-04, PL-SEQ-01-05, PL-TIM-10, PL-ADC-19, PL-AMB-65, PL-POR-06,
- * PL-SEQ-01-03, PL-CONV-04 */
+ * PL-SEQ-01-03, PL-CONV-04, PL-AMB-69 */
 static void waits_of_the_power_up(void)
 {
     static const struct {
@@ -149,7 +151,8 @@ static int last_write(int reg)
 }
 
 /* proves: PL-SEQ-03-03, PL-SEQ-03-04, PL-SEQ-03-05, PL-SEQ-03-06, PL-SEQ-03-07, PL-SEQ-03-08, PL-SEQ-04-01,
- * PL-SEQ-04-02, PL-ADC-13, PL-TIM-16, PL-ADC-10, PL-BCAST-03, PL-AMB-46, PL-SPI-14 */
+ * PL-SEQ-04-02, PL-ADC-13, PL-TIM-16, PL-ADC-10, PL-BCAST-03, PL-AMB-46, PL-SPI-14, PL-ADC-18, PL-AMB-64,
+ * PL-AMB-99, PL-GPIO-03, PL-AMB-68 */
 static void order_of_the_configuration(void)
 {
     start(4);
@@ -207,7 +210,8 @@ static void everything_is_read_back_by_unicast(void)
     TEST_ASSERT_FALSE(sim_pl_alert_pin(&b.pl));
 }
 
-/* proves: PL-SEQ-03-01, PL-ADC-08, PL-CUV-08, PL-NUM-34, PL-NUM-35, PL-AMB-73 */
+/* proves: PL-SEQ-03-01, PL-ADC-08, PL-CUV-08, PL-NUM-34, PL-NUM-35, PL-AMB-73, PL-ADC-07, PL-AMB-72,
+ * PL-NUM-36 */
 static void fewer_cells_set_the_scan_and_the_mask(void)
 {
     static const uint8_t cells[4] = {3, 4, 5, 6};

@@ -28,7 +28,8 @@ static void expect_blank(void)
 }
 
 /* proves: PL-SEQ-12-02, PL-SEQ-12-03, PL-SEQ-12-04, PL-SEQ-12-05, PL-SEQ-12-06, PL-SEQ-12-07, PL-SEQ-12-08,
- * PL-OTP-06, PL-OTP-07, PL-TIM-26, PL-AMB-103, PL-AMB-104, PL-AMB-105, PL-OTP-08, PL-VEC-32, PL-SPI-14 */
+ * PL-OTP-06, PL-OTP-07, PL-TIM-26, PL-AMB-103, PL-AMB-104, PL-AMB-105, PL-OTP-08, PL-VEC-32, PL-SPI-14,
+ * PL-G3-06, PL-AMB-110, PL-OTP-02, PL-AMB-102 */
 static void a_part_is_programmed(void)
 {
     ready();
@@ -60,7 +61,7 @@ static void a_part_is_programmed(void)
     TEST_ASSERT_EQUAL_HEX8(0xf0, PEEK(2, 0x4b));
 }
 
-/* proves: PL-SEQ-12-01, PL-OTP-09, PL-ELEC-12, PL-ELEC-04, PL-NUM-16 */
+/* proves: PL-SEQ-12-01, PL-OTP-09, PL-ELEC-12, PL-ELEC-04, PL-NUM-16, PL-OTP-03 */
 static void guards(void)
 {
     uint8_t bad[12];

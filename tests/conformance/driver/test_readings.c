@@ -171,7 +171,8 @@ static void life(bool pin)
 }
 
 /* proves: PL-AMB-12, PL-AMB-26, PL-AMB-33, PL-AMB-40, PL-AMB-49, PL-AMB-54, PL-AMB-78, PL-AMB-79, PL-AMB-83,
- * PL-AMB-84, PL-AMB-86, PL-AMB-100, PL-FLT-04, PL-SPI-04, PL-TIM-04, PL-CONV-05, PL-ADC-13, PL-REG-02 */
+ * PL-AMB-84, PL-AMB-86, PL-AMB-100, PL-FLT-04, PL-SPI-04, PL-TIM-04, PL-CONV-05, PL-ADC-13, PL-REG-02,
+ * PL-AMB-35 */
 static void a_whole_life_under_every_reading(void)
 {
     sim_pl_options o;

@@ -3,7 +3,7 @@
 #include "bench.h"
 
 /* proves: PL-SEQ-06-01, PL-SEQ-06-02, PL-SEQ-06-03, PL-SEQ-06-04, PL-CONV-09, PL-CONV-12, PL-TIM-11,
- * PL-PKT-06, PL-PKT-08, PL-PKT-15, PL-NUM-37 */
+ * PL-PKT-06, PL-PKT-08, PL-PKT-15, PL-NUM-37, PL-AMB-71, PL-CONV-01 */
 static void one_broadcast_and_one_burst_each(void)
 {
     for (int devices = 1; devices <= 62; devices += devices == 1 ? 3 : 29) {
@@ -27,7 +27,7 @@ static void one_broadcast_and_one_burst_each(void)
 }
 
 /* proves: PL-SEQ-06-07, PL-VCELL-01, PL-VCELL-05, PL-VBAT-01, PL-TS-01, PL-TS-02, PL-TS-09, PL-NUM-01,
- * PL-NUM-03, PL-NUM-08, PL-NUM-10, PL-AMB-58, PL-AMB-75 */
+ * PL-NUM-03, PL-NUM-08, PL-NUM-10, PL-AMB-58, PL-AMB-75, PL-TS-12 */
 static void numbers_out_of_the_chip(void)
 {
     static const double volts[] = {0.7, 1.0, 1.2,  2.0, 2.5, 3.0, 3.3, 3.35,
@@ -151,7 +151,8 @@ static void lock_device(int device)
     bench_raw_write(device, 0x30, 0x3d); /* ADC_ON lost behind the driver's back */
 }
 
-/* proves: PL-SEQ-05-01, PL-SEQ-05-02, PL-SEQ-05-03, PL-SEQ-05-05, PL-SEQ-06-06, PL-AMB-66 */
+/* proves: PL-SEQ-05-01, PL-SEQ-05-02, PL-SEQ-05-03, PL-SEQ-05-05, PL-SEQ-06-06, PL-AMB-66, PL-DRDY-01,
+ * PL-AMB-80 */
 static void a_lock_up_is_reported_and_recovered(void)
 {
     for (int mask = 1; mask < 8; mask++) {
@@ -210,7 +211,7 @@ static void uvlo_makes_readings_invalid(void)
     TEST_ASSERT_EQUAL_HEX16(0, MODULE(2)->faults & BQ_F_SUPPLY);
 }
 
-/* proves: PL-GPAI-06, PL-GPAI-01, PL-NUM-02, PL-NUM-09, PL-AMB-56 */
+/* proves: PL-GPAI-06, PL-GPAI-01, PL-NUM-02, PL-NUM-09, PL-AMB-56, PL-AMB-61 */
 static void gpai_and_brick_in_turn(void)
 {
     bq76pl536_flags flags;
@@ -226,6 +227,28 @@ static void gpai_and_brick_in_turn(void)
     TEST_ASSERT_INT_WITHIN(2, 21600, (bench_sample(), MODULE(2)->stack_mv));
     bench_no_misuse();
     bench_judge_packets();
+}
+
+/* proves: PL-AMB-76, PL-TS-05, PL-TS-06, PL-TS-07 */
+static void only_powered_sensors_are_read(void)
+{
+    for (uint8_t sensors = 0; sensors <= 2; sensors++) {
+        bench_up(2, NULL);
+        b.config.sensors = sensors;
+        for (int t = sensors; t < 2; t++) {
+            b.config.ot_c[t] = 0;
+        }
+        bench_ready_from();
+        bench_sample();
+        TEST_ASSERT_EQUAL_INT(2 * sensors, b.sample.temp_count);
+        TEST_ASSERT_EQUAL_HEX8((1 << sensors) - 1, PEEK(2, 0x31));
+        TEST_ASSERT_EQUAL_HEX8(((1 << sensors) - 1) << 4, PEEK(2, 0x30) & 0x30);
+        for (int t = 0; t < b.sample.temp_count; t++) {
+            TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, b.temps[t].quality);
+            TEST_ASSERT_INT_WITHIN(2, 250, b.temps[t].dc);
+        }
+        bench_no_misuse();
+    }
 }
 
 /* proves: PL-SEQ-00-03, PL-CONV-12, PL-AMB-67, PL-SEQ-06-08 */
@@ -254,6 +277,7 @@ int main(void)
     RUN_TEST(a_lock_up_is_reported_and_recovered);
     RUN_TEST(uvlo_makes_readings_invalid);
     RUN_TEST(gpai_and_brick_in_turn);
+    RUN_TEST(only_powered_sensors_are_read);
     RUN_TEST(a_start_reported_as_failed_is_not_repeated_into_itself);
     return UNITY_END();
 }

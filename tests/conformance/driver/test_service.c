@@ -113,6 +113,41 @@ static void a_damaged_start_is_repeated(void)
     }
 }
 
+/* proves: PL-AMB-07, PL-SEQ-08-04 */
+static void a_truncated_write_is_repeated(void)
+{
+    bench_ready(3, NULL);
+    sim_pl_set_cell(&b.pl, 3, 3, 3.2);
+    sim_pl_bus_fault(&b.pl)->short_packets = 1; /* the conversion start loses its CRC */
+    EXPECT_STATUS(BQ_OK, bench_scan());
+    bench_sample();
+    TEST_ASSERT_EQUAL_UINT(3200, CELL(3, 3)->mv);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, CELL(3, 3)->quality);
+    TEST_ASSERT_EQUAL_HEX8(0x00, PEEK(3, 0x21));
+}
+
+/* proves: PL-AMB-42, PL-AMB-41, PL-ELEC-14 */
+static void a_flag_inside_the_hysteresis_is_no_defect(void)
+{
+    bench_ready(1, NULL);
+    sim_pl_set_cell(&b.pl, 1, 1, 4.25);
+    bench_wait_ms(1500);
+    sim_pl_set_cell(&b.pl, 1, 1, 4.17); /* below the threshold, not released */
+    scans(1, 0);
+    bench_acknowledge();
+    bench_wait_ms(1500);
+    scans(1, 0);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, MODULE(1)->faults); /* back, and nothing but that */
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, CELL(1, 1)->quality);
+    TEST_ASSERT_EQUAL_UINT(4170, CELL(1, 1)->mv);
+    sim_pl_set_cell(&b.pl, 1, 1, 4.1);
+    scans(1, 0);
+    EXPECT_STATUS(BQ_OK, bench_acknowledge());
+    bench_wait_ms(1500);
+    scans(1, 0);
+    TEST_ASSERT_EQUAL_HEX16(0, MODULE(1)->faults);
+}
+
 /* proves: PL-SEQ-08-05, PL-POR-10, PL-POR-11, PL-SEQ-13-05, PL-G3-07, PL-SEQ-13-01 */
 static void an_unexpected_reset_is_reported_and_repaired(void)
 {
@@ -307,6 +342,8 @@ int main(void)
     RUN_TEST(flags_are_found_without_any_line);
     RUN_TEST(a_crc_flag_is_cleared_and_leaves_no_doubt);
     RUN_TEST(a_damaged_start_is_repeated);
+    RUN_TEST(a_truncated_write_is_repeated);
+    RUN_TEST(a_flag_inside_the_hysteresis_is_no_defect);
     RUN_TEST(an_unexpected_reset_is_reported_and_repaired);
     RUN_TEST(a_stray_force_is_cleared);
     RUN_TEST(parity_is_repaired);
