@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file bq769x0.h
+ * Driver for one bq76920, bq76930 or bq76940 on an I2C bus: boot, identification, configuration in physical
+ * units, measurement, coulomb counting, faults and their recovery, FETs, balancing, SHIP.
+ *
+ * Nothing blocks: each function named "begin" starts one job and returns; bq769x0_poll() advances it and
+ * starts at most one transfer per call. One job runs at a time. The instance is the caller's; the driver has
+ * no other state.
+ */
+#ifndef BQHOST_BQ769X0_H
+#define BQHOST_BQ769X0_H
+
+#include "bqhost/afe.h"
+#include "bqhost/bq769x0_convert.h"
+#include "bqhost/hal.h"
+#include "bqhost/thermistor.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum bq769x0_crc { BQ769X0_CRC_PROBE, BQ769X0_CRC_OFF, BQ769X0_CRC_ON } bq769x0_crc;
+
+/** What the user wants. Validated whole by bq769x0_init(). Limits are achieved never looser than asked, see
+ * bq769x0_convert.h. */
+typedef struct bq769x0_config {
+    uint8_t inputs;   /**< size of the part: 5 (bq76920), 10 (bq76930), 15 (bq76940) */
+    uint8_t cells;    /**< cells in series: 3..5, 6..10, 9..15 */
+    uint16_t wiring;  /**< inputs that carry cells, bit n-1 = VCn; 0 = the datasheet's table */
+    uint8_t address7; /**< 0x08, 0x18, or 0 = probe both */
+    uint8_t crc;      /**< bq769x0_crc: probe, or what the part number says */
+    uint8_t sensors;  /**< thermistors in use, 0..inputs / 5; 0 = die temperature instead */
+    const bq_thermistor
+        *thermistor;         /**< table; may be NULL only with sensors = 0; must outlive the instance */
+    uint32_t shunt_uohm;     /**< 100..100000 */
+    bool invert_current;     /**< the shunt is mounted the other way round */
+    uint16_t ov_mv;          /**< overvoltage limit of a cell */
+    uint16_t uv_mv;          /**< undervoltage limit */
+    uint16_t ov_recover_mv;  /**< every cell below: OV may be released; mandatory, below ov_mv */
+    uint16_t uv_recover_mv;  /**< every cell above: UV may be released; mandatory, above uv_mv */
+    uint8_t ov_delay_s;      /**< 1, 2, 4, 8; others are rounded down */
+    uint8_t uv_delay_s;      /**< 1, 4, 8, 16; others are rounded down */
+    uint32_t ocd_ma, scd_ma; /**< discharge overcurrent and short-circuit limits */
+    uint16_t ocd_delay_ms;   /**< 8..1280 */
+    uint16_t scd_delay_us;   /**< 70..400 */
+    uint16_t load_settle_ms; /**< CHG off until the first look at LOAD_PRESENT; 0 = 100 (X0-LOAD-05) */
+    uint16_t frozen_scans;   /**< identical pictures in a row that count as a stopped converter; 0 = never */
+    uint8_t balance_timer_s; /**< balancing ends when no scan or apply came for so long; 0 = 4 (X0-CB-13) */
+    bool balance_across_groups; /**< allow 5+6 and 10+11 together (X0-AMB-61) */
+    bool keep_fets;             /**< warm start: leave the FETs of a running part as they are */
+} bq769x0_config;
+
+/** What the chip really does, known after bring-up. */
+typedef struct bq769x0_achieved {
+    bq769x0_trim trim;
+    int32_t ov_uv, uv_uv; /**< thresholds of a cell */
+    bq769x0_current_limits current;
+    uint8_t protect3, ov_trip, uv_trip;
+    uint8_t address7;
+    bool crc;
+} bq769x0_achieved;
+
+/** Charge counted since init or bq769x0_charge_reset(). Code sums are in coulomb counter codes times
+ * milliseconds. */
+typedef struct bq769x0_charge {
+    int64_t uas; /**< micro-ampere seconds, positive charges, missed windows filled with the mean of their
+                    neighbours */
+    uint32_t results; /**< windows fetched */
+    uint32_t missed;  /**< windows that were lost, by the host's clock (X0-SEQ-26) */
+} bq769x0_charge;
+
+#include "bqhost/bq769x0_state.h" /* struct bq769x0: complete, so that the caller can own it; members are private */
+
+/**
+ * Checks the whole configuration, then sets up the instance. Touches no bus.
+ * BQ_OK; BQ_E_ARG (null pointer); BQ_E_CELLS (count the size cannot have, or a wiring that does not hold it);
+ * BQ_E_RANGE (inputs, address, shunt, sensors, recovery thresholds); BQ_E_NO_CODE (a current limit or delay
+ * the chip does not offer); BQ_E_CONFIG (limits that contradict each other). Voltage limits depend on the
+ * device's trim and are refused by bring-up.
+ */
+bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c, const bq_gpio *gpio,
+                       const bq_clock *clock);
+
+/** Begins bring-up: boot by BQ_LINE_AFE_BOOT if the part does not answer, probing of address and CRC, trim,
+ * configuration, first picture (X0-SEQ-01..20). Ends with BQ_OK; BQ_E_NOT_FOUND; BQ_E_CONFIG (another part
+ * than configured, X0-SEQ-10); BQ_E_NO_CODE (a voltage limit this device cannot hold); BQ_E_VERIFY;
+ * BQ_E_CELLS (inputs in use or shorted do not match, X0-SEQ-12); BQ_E_STALE (no first picture); a bus error.
+ * FETs are off unless keep_fets. */
+bq_status bq769x0_begin_start(bq769x0 *d);
+/** Begins one update: SYS_STAT, one block of all measurements, write-1-to-clear of CC_READY (three
+ * transactions), and every second the scrub; then fault service and recovery when a fault bit is set. */
+bq_status bq769x0_begin_scan(bq769x0 *d);
+/** Begins to carry out an action: FETs and balancing outputs, verified. */
+bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action);
+/** Begins a comparison of every configuration register with what it should hold. */
+bq_status bq769x0_begin_self_test(bq769x0 *d);
+/** Begins SHIP entry; ends with BQ_OK when the part no longer answers, BQ_E_VERIFY if it still does after
+ * three tries. */
+bq_status bq769x0_begin_ship(bq769x0 *d);
+/** Begins one conversion of the coulomb counter while it is otherwise off (X0-SEQ-46); the result is in the
+ * next sample. */
+bq_status bq769x0_begin_oneshot(bq769x0 *d);
+/** See bq_afe_ops.poll. */
+bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us);
+/** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. */
+bq_status bq769x0_sample(bq769x0 *d, bq_sample *sample);
+
+/** GAIN2 calibration (X0-SEQ-45): `stack_mv` was measured by the host at rest; every cell is scaled by it
+ * from now on. BQ_OK; BQ_E_RANGE outside 0.97..1.03 of the sum of the cells (nothing changed); BQ_E_STALE
+ * without a valid picture. */
+bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv);
+/** True when a cell has moved by more than 100 mV since the last calibration (X0-ADC-17). */
+bool bq769x0_calibration_due(const bq769x0 *d);
+
+const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d);
+const bq769x0_charge *bq769x0_get_charge(const bq769x0 *d);
+void bq769x0_charge_reset(bq769x0 *d);
+
+/** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). */
+void bq769x0_unlock(bq769x0 *d);
+
+/** Fills the interface the super-loop uses. */
+bq_afe bq769x0_afe(bq769x0 *d);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
