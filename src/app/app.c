@@ -254,21 +254,17 @@ static uint32_t hint_us(const bq_app *app)
 
 uint32_t bq_app_step(bq_app *app)
 {
-    bool again;
-
     if (app == NULL) {
         return UINT32_MAX;
     }
     advance_time(app);
-    again = bq_app_poll_job(app);
+    bq_app_poll_job(app);
     bq_app_watch_contactor(app);
     begin_period(app);
     if (step_due(app)) {
         step_pack(app);
-        again = true;
     }
-    again = bq_app_begin_job(app) || again;
-    return again ? 0u : hint_us(app);
+    return bq_app_begin_job(app) ? 0u : hint_us(app);
 }
 
 bq_status bq_app_request(bq_app *app, bq_pack_request request)

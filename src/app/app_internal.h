@@ -7,9 +7,9 @@
 
 void bq_app_count(uint32_t *counter); /* saturating */
 
-/* monitor.c: polls the running job once, begins the next one when idle. True if one ended or began. */
-bool bq_app_poll_job(bq_app *app);
-bool bq_app_begin_job(bq_app *app);
+/* monitor.c */
+void bq_app_poll_job(bq_app *app);  /* polls the running job once */
+bool bq_app_begin_job(bq_app *app); /* begins the next one when idle; true if it tried */
 bool bq_app_paused(const bq_app *app, uint32_t *left_us); /* a failed job may not be repeated yet */
 
 /* contactor.c */

@@ -25,6 +25,7 @@ static void lose_monitor(bq_app *app, bq_pack_monitor state, bq_status status)
     app->input.monitor = state;
     app->input.monitor_status = status;
     app->input.self_test = BQ_TEST_NONE;
+    app->input.apply_status = BQ_OK;
     app->scanned = false;
     app->scan_due = false;
     app->apply_due = false;
@@ -36,14 +37,11 @@ static void monitor_up(bq_app *app)
 {
     app->input.monitor = BQ_MONITOR_UP;
     app->input.monitor_status = BQ_OK;
-    app->input.self_test = BQ_TEST_NONE;
-    app->input.apply_status = BQ_OK;
     app->asleep = false;
     app->pausing = false;
     app->scan_ms = app->now_ms;
     app->tick_us = app->last_us; /* a new period begins here, with a scan */
     app->scan_due = true;
-    app->scanned = false;
 }
 
 static void bring_up_ended(bq_app *app, bq_status status)
@@ -131,25 +129,24 @@ static void job_ended(bq_app *app, bq_status status)
     }
 }
 
-bool bq_app_poll_job(bq_app *app)
+void bq_app_poll_job(bq_app *app)
 {
     bq_status status;
 
     if (app->job == BQ_JOB_NONE) {
-        return false;
+        return;
     }
     app->wait_us = 0;
     status = app->afe.ops->poll(app->afe.ctx, &app->wait_us);
     if (status != BQ_PENDING) {
         job_ended(app, status);
-        return true;
+        return;
     }
     if (app->job == BQ_JOB_START && app->input.monitor != BQ_MONITOR_FAILED &&
         app->now_ms - app->job_ms >= BQ_APP_BRING_UP_MS) {
         app->input.monitor = BQ_MONITOR_FAILED; /* still polled: it may yet succeed */
         app->input.monitor_status = BQ_E_TIMEOUT;
     }
-    return false;
 }
 
 static bq_app_job next_job(const bq_app *app)

@@ -104,6 +104,9 @@ static bq_status sample(void *ctx, bq_sample *s)
     if (f->sample_status != BQ_OK) {
         return f->sample_status;
     }
+    if (s->cell_capacity < FAKE_CELLS || s->temp_capacity < FAKE_SENSORS || s->module_capacity < 1u) {
+        return BQ_E_ARG;
+    }
     s->cell_count = FAKE_CELLS;
     s->temp_count = FAKE_SENSORS;
     s->module_count = 1;

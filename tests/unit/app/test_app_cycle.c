@@ -278,6 +278,13 @@ static void test_unusable_configurations_are_refused_by_name(void)
     config.period_ms = 250; /* two periods fit */
     config.retry_ms = 0;
     TEST_ASSERT_EQUAL(BQ_OK, bq_app_config_validate(&config, NULL));
+    config.period_ms = 10;
+    config.retry_ms = 100;
+    TEST_ASSERT_EQUAL(BQ_OK, bq_app_config_validate(&config, NULL));
+    config.pack.comm_timeout_ms = 20000;
+    config.period_ms = 10000;
+    config.retry_ms = 60000;
+    TEST_ASSERT_EQUAL(BQ_OK, bq_app_config_validate(&config, NULL));
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_app_config_validate(NULL, NULL));
 }
 
@@ -325,6 +332,12 @@ static void test_missing_parts_are_refused(void)
     TEST_ASSERT_EQUAL(BQ_E_ARG, INIT(a, &afe, &gpio, &clock, NULL, 5, 1, 1));
     TEST_ASSERT_EQUAL(BQ_E_ARG, INIT(a, &afe, &gpio, &clock, NULL, 6, 0, 1));
     TEST_ASSERT_EQUAL(BQ_E_ARG, INIT(a, &afe, &gpio, &clock, NULL, 6, 1, 0));
+    TEST_ASSERT_EQUAL(BQ_E_ARG,
+                      bq_app_init(a, &config, &afe, &gpio, &clock, NULL, NULL, 6, f.temps, 1, f.modules, 1));
+    TEST_ASSERT_EQUAL(BQ_E_ARG,
+                      bq_app_init(a, &config, &afe, &gpio, &clock, NULL, f.cells, 6, NULL, 1, f.modules, 1));
+    TEST_ASSERT_EQUAL(BQ_E_ARG,
+                      bq_app_init(a, &config, &afe, &gpio, &clock, NULL, f.cells, 6, f.temps, 1, NULL, 1));
     ops.wake = NULL;
     TEST_ASSERT_EQUAL(BQ_E_ARG, INIT(a, &holes, &gpio, &clock, NULL, 6, 1, 1));
     ops.wake = nothing;

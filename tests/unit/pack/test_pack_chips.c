@@ -236,6 +236,24 @@ static void test_an_open_wire_known_only_from_its_cells_is_enough(void)
     TEST_ASSERT_EQUAL(-1, r.p.fault[BQ_FAULT_OPEN_WIRE].wire);
 }
 
+static void test_every_chip_fault_recovers_by_itself_while_on_is_requested(void)
+{
+    static const uint16_t flags[] = {BQ_F_CELL_OV, BQ_F_CELL_UV, BQ_F_OVERTEMP,    BQ_F_DIE_TEMP,
+                                     BQ_F_RESET,   BQ_F_SHORT,   BQ_F_OVERCURRENT, BQ_F_OPEN_WIRE};
+
+    for (unsigned i = 0; i < sizeof flags / sizeof flags[0]; i++) {
+        setUp();
+        r.modules[0].faults = flags[i];
+        rig_run(&r, 1000);
+        TEST_ASSERT_EQUAL(BQ_PACK_FAULT, r.p.state);
+        r.modules[0].faults = 0;
+        rig_run(&r, 1000);
+        TEST_ASSERT_EQUAL(BQ_PACK_FAULT, r.p.state);
+        rig_run(&r, 200);
+        healthy();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -250,5 +268,6 @@ int main(void)
     RUN_TEST(test_chip_flags_are_cleared_only_once_acted_on);
     RUN_TEST(test_an_open_wire_is_named_not_its_bouncing_cells);
     RUN_TEST(test_an_open_wire_known_only_from_its_cells_is_enough);
+    RUN_TEST(test_every_chip_fault_recovers_by_itself_while_on_is_requested);
     return UNITY_END();
 }

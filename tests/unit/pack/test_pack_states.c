@@ -256,6 +256,22 @@ static void test_silence_right_after_waking_trips_after_the_timeout(void)
     TEST_ASSERT_EQUAL(1u << BQ_FAULT_COMM_LOSS, r.p.faults);
 }
 
+static void test_debounce_begins_again_after_sleep(void)
+{
+    rig_standby(&r);
+    r.cells[0].mv = 2900;
+    rig_run(&r, 200);
+    r.in.request = BQ_REQUEST_SLEEP;
+    rig_scan(&r); /* 200 of 300 ms */
+    TEST_ASSERT_EQUAL(BQ_PACK_SLEEP, r.p.state);
+    r.in.request = BQ_REQUEST_ON;
+    rig_scan(&r);
+    rig_run(&r, 300);
+    TEST_ASSERT_EQUAL(0, r.p.faults);
+    rig_scan(&r);
+    TEST_ASSERT_EQUAL(1u << BQ_FAULT_CELL_UV, r.p.faults);
+}
+
 static void test_a_fault_survives_sleep(void)
 {
     rig_on(&r);
@@ -434,6 +450,7 @@ int main(void)
     RUN_TEST(test_sleep_is_asked_for_only_after_the_outputs_were_off);
     RUN_TEST(test_a_long_sleep_is_not_a_fault_and_waking_starts_again);
     RUN_TEST(test_silence_right_after_waking_trips_after_the_timeout);
+    RUN_TEST(test_debounce_begins_again_after_sleep);
     RUN_TEST(test_a_fault_survives_sleep);
     RUN_TEST(test_names);
     RUN_TEST(test_the_directions_of_every_fault);
