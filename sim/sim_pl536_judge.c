@@ -82,6 +82,8 @@ void sim_pl_judge_timing(sim_pl *s, const sim_pl_spi_timing *t)
 void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t length, size_t bits)
 {
     size_t shortest = 8u * (3u + length + ((d->reg[REG_IO_CONFIG] & IOC_CRC_DIS) == 0 ? 1u : 0u));
+    /* the search for devices whose CRC is off reads without (PL-SEQ-02-11) */
+    bool seeks_crc_off = s->now < s->crc_off_search_until && length == 1 && bits == 32;
 
     if (length == 0) {
         sim_pl_judge(s, d, "PL-PKT-12", "read of length 0");
@@ -89,7 +91,7 @@ void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t le
     if (first + (unsigned)length > REG_LAST + 1u) {
         sim_pl_judge(s, d, "PL-PKT-14", "read past 0x4b");
     }
-    if (bits != shortest && bits != 8u * (4u + length)) {
+    if (bits != shortest && bits != 8u * (4u + length) && !seeks_crc_off) {
         sim_pl_judge(s, d, "PL-PKT-04", "read packet of wrong length");
     }
     if (d->conv_end != SIM_PL_NEVER && first <= REG_TEMP2 + 1 && first + (unsigned)length > REG_GPAI) {

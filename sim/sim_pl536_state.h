@@ -76,6 +76,7 @@ struct sim_pl {
     uint64_t now, next;
     uint64_t last_packet; /**< start of the last packet */
     uint32_t spi_hz;
+    uint64_t crc_off_search_until; /* somebody looks for devices whose CRC is off: short packets are no mistake */
     int spi_mode;
     uint32_t generation; /**< counts broadcast RESETs: addresses of an older one are stale */
     uint64_t rng;
