@@ -255,6 +255,8 @@ static void test_open_and_shorted_sensors_are_no_resistances(void)
         TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_ts_ohms(sensor, 0x3fff, &ohms));
         TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_ts_ohms(sensor, 0x4000, &ohms));
         TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_ts_code_of_ohms(sensor, 0, &code));
+        TEST_ASSERT_EQUAL_INT(BQ_E_RANGE,
+                              bq76pl536_ts_code_of_ohms(sensor, sensor == 1u ? 30000000u : 6684000u, &code));
         TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_ts_code_of_ohms(sensor, 100000000, &code));
         TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, bq76pl536_ts_code_of_ohms(sensor, 0xffffffff, &code));
     }

@@ -228,6 +228,12 @@ static void test_without_crc_a_dead_bus_is_known_where_registers_allow(void)
     TEST_ASSERT_EQUAL_INT(BQ_OK, check(false));
     answer(0xff, false);
     TEST_ASSERT_EQUAL_INT(BQ_E_NO_ANSWER, check(false));
+    read_request(1, 0x3a, 1, false); /* ends just below, begins just above a register that cannot be 00 */
+    answer(0x00, false);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, check(false));
+    read_request(1, 0x3c, 1, false);
+    answer(0x00, false);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, check(false));
     read_request(1, 0x47, 5, false);
     answer(0xff, false);
     TEST_ASSERT_EQUAL_INT(BQ_OK, check(false));
