@@ -83,7 +83,7 @@ void sim_pl_judge_read(sim_pl *s, const sim_pl_dev *d, uint8_t first, uint8_t le
 {
     size_t shortest = 8u * (3u + length + ((d->reg[REG_IO_CONFIG] & IOC_CRC_DIS) == 0 ? 1u : 0u));
     /* the search for devices whose CRC is off reads without (PL-SEQ-02-11) */
-    bool seeks_crc_off = s->now < s->crc_off_search_until && length == 1 && bits == 32;
+    bool seeks_crc_off = s->now < s->crc_off_search_until && bits == 8u * (3u + length);
 
     if (length == 0) {
         sim_pl_judge(s, d, "PL-PKT-12", "read of length 0");
