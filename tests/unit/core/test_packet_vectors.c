@@ -131,6 +131,8 @@ static void test_programming_has_a_builder_of_its_own(void)
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_program(built, sizeof built, 0x01, true, &length));
     TEST_ASSERT_EQUAL_UINT(4, length);
     TEST_ASSERT_EQUAL_MEMORY(expected, built, 4);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_program(built, 4, 0x3e, true, &length));
+    TEST_ASSERT_EQUAL_HEX8(0x7d, built[0]);
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_packet_program(built, 3, 0x01, false, &length));
     TEST_ASSERT_EQUAL_UINT(3, length);
 
