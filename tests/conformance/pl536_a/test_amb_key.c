@@ -247,7 +247,7 @@ static void test_a_second_programming_run_is_refused_and_reported(void)
     expect_misuse("PL-AMB-111 PL-OTP-12 PL-OTP-02", 1);
 }
 
-/* proves: PL-AMB-106 */
+/* proves: PL-AMB-106, PL-REG-01, PL-REG-03 */
 static void test_writes_to_read_only_and_reserved_registers_are_ignored(void)
 {
     uint8_t before[256], after[256];

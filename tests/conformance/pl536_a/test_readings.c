@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The other readings of ambiguous facts of the bus. Each test runs the same steps under the chosen reading (0) and the other one (1). */
+/* The other readings of ambiguous facts of the bus. Each test runs the same steps under the chosen reading
+ * (0) and the other one (1). */
 #include "bench.h"
 
 static void quiet(int n, const sim_pl_options *options)
