@@ -27,6 +27,15 @@ static void note_reset(sim_pl *s, const uint8_t *tx, size_t bits)
     }
 }
 
+/* A reset of all without CRC begins the search for devices whose CRC is off (PL-SEQ-02-11): for a while
+ * packets without CRC are no mistake. */
+static void note_search(sim_pl *s, const uint8_t *tx, size_t bits)
+{
+    if (bits == 24 && tx[0] == 0x7f && tx[1] == REG_RESET && tx[2] == 0xa5) {
+        s->crc_off_search_until = s->now + 10 * SIM_PL_MS;
+    }
+}
+
 static void judge_strict(sim_pl *s)
 {
     if (s->spi_mode != 1) {
@@ -54,6 +63,7 @@ void sim_pl_judge_host(sim_pl *s, const uint8_t *tx, size_t bits)
     }
     if ((tx[0] & 1) != 0 && bits >= 16) {
         note_reset(s, tx, bits);
+        note_search(s, tx, bits);
     }
 }
 

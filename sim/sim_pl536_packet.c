@@ -170,16 +170,6 @@ static void crc_error(sim_pl *s, sim_pl_dev *d)
     sim_pl_touch(s, d);
 }
 
-/* A reset of all or an address for the next device, without CRC: the search for devices whose CRC is off
- * (PL-SEQ-02-11). */
-static bool seeks_crc_off(const packet *p)
-{
-    bool reset = p->tx[0] == 0x7f && p->tx[1] == REG_RESET && p->tx[2] == 0xa5;
-    bool address = p->tx[0] == 0x01 && p->tx[1] == REG_ADDRESS;
-
-    return p->bits == 24 && (reset || address);
-}
-
 /* Chip select rises: the device decides what it got (PL-CRC-05, PL-AMB-07, PL-AMB-08, PL-AMB-16). */
 static void write_to(sim_pl *s, sim_pl_dev *d, const packet *p, bool broadcast)
 {
@@ -192,9 +182,9 @@ static void write_to(sim_pl *s, sim_pl_dev *d, const packet *p, bool broadcast)
     sim_pl_eprom_access(s, d);
     if (p->bits != wanted) {
         /* a good packet with CRC may be looking for a device that has its CRC on (PL-SEQ-02-11) */
-        if (seeks_crc_off(p)) {
-            s->crc_off_search_until = s->now + 10 * SIM_PL_MS;
-        } else if (with_crc || p->bits != 32 || sim_pl_crc8(0, p->tx, 3) != p->tx[3]) {
+        bool searching = s->now < s->crc_off_search_until && p->bits == 24; /* the other way round */
+
+        if (!searching && (with_crc || p->bits != 32 || sim_pl_crc8(0, p->tx, 3) != p->tx[3])) {
             sim_pl_judge(s, d, "PL-PKT-03", "write packet of wrong length");
         }
         if (with_crc) {
