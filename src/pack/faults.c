@@ -132,7 +132,6 @@ static void gone(bq_pack *p, bq_pack_fault f, const bq_picture *v, const bq_pack
     r->clearing = true;
     if (v->fresh && r->timer_ms >= p->config.recover_ms) {
         r->active = false;
-        r->clearing = false;
         r->hold = BQ_HOLD_NONE;
         p->faults &= ~((uint32_t)1u << f);
         bq_pack_log(p, now_ms, BQ_EVENT_RECOVERED, (uint8_t)f, 0);

@@ -39,9 +39,6 @@ bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config)
     p->config = *config;
     p->state = BQ_PACK_INIT;
     p->summary.soc_permille = -1;
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        p->fault[f].wire = -1;
-    }
     bq_soc_init(&p->soc);
     return BQ_OK;
 }

@@ -33,6 +33,8 @@ static void test_init_opens_the_lines_and_touches_no_monitor(void)
     TEST_ASSERT_FALSE(bq_app_outputs_on(&f.app));
     TEST_ASSERT_EQUAL(BQ_PACK_INIT, fake_state(&f));
     TEST_ASSERT_EQUAL(0, bq_app_sample(&f.app)->cell_count);
+    (void)bq_app_step(&f.app);
+    TEST_ASSERT_EQUAL(1, counters()->steps); /* something to show from the first pass on */
 }
 
 static void test_the_way_up_and_the_order_inside_a_period(void)
@@ -76,6 +78,18 @@ static void test_opening_comes_before_the_monitor_and_closing_after_it(void)
     TEST_ASSERT_EQUAL_STRING("sm0a", f.order);
     TEST_ASSERT_TRUE(f.applied.clear_faults);
     TEST_ASSERT_FALSE(f.applied.discharge_on);
+}
+
+static void test_with_separate_paths_the_contactor_needs_both(void)
+{
+    config.pack.separate_paths = true;
+    TEST_ASSERT_EQUAL(BQ_OK, fake_start(&f, &config, false));
+    fake_on(&f);
+    f.faults = BQ_F_CELL_OV;
+    fake_run(&f, 300);
+    TEST_ASSERT_TRUE(f.applied.discharge_on);
+    TEST_ASSERT_FALSE(f.applied.charge_on);
+    TEST_ASSERT_FALSE(f.closed);
 }
 
 static void test_request_off_opens_in_the_next_pass_even_during_a_scan(void)
@@ -368,6 +382,7 @@ int main(void)
     RUN_TEST(test_the_way_up_and_the_order_inside_a_period);
     RUN_TEST(test_one_scan_step_and_apply_per_period);
     RUN_TEST(test_opening_comes_before_the_monitor_and_closing_after_it);
+    RUN_TEST(test_with_separate_paths_the_contactor_needs_both);
     RUN_TEST(test_request_off_opens_in_the_next_pass_even_during_a_scan);
     RUN_TEST(test_request_changes_follow_each_other);
     RUN_TEST(test_an_off_that_comes_while_the_on_is_being_applied_wins);

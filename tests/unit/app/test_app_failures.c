@@ -196,6 +196,15 @@ static void test_bring_up_that_fails_is_repeated_with_pauses(void)
     TEST_ASSERT_EQUAL(6, counters()->bring_ups);
 }
 
+static void test_the_pause_defaults_to_one_second(void)
+{
+    config.retry_ms = 0;
+    TEST_ASSERT_EQUAL(BQ_OK, fake_start(&f, &config, false));
+    f.job[BQ_JOB_START].end = BQ_E_NOT_FOUND;
+    fake_run(&f, 9500);
+    TEST_ASSERT_EQUAL(10, counters()->bring_ups);
+}
+
 static void test_bring_up_that_cannot_begin_counts_as_failed(void)
 {
     f.job[BQ_JOB_START].begin = BQ_E_BUSY;
@@ -320,6 +329,7 @@ int main(void)
     RUN_TEST(test_slow_scans_cost_steps_but_not_the_contactor);
     RUN_TEST(test_the_pack_step_runs_at_least_every_five_quarters_of_a_period);
     RUN_TEST(test_bring_up_that_fails_is_repeated_with_pauses);
+    RUN_TEST(test_the_pause_defaults_to_one_second);
     RUN_TEST(test_bring_up_that_cannot_begin_counts_as_failed);
     RUN_TEST(test_bring_up_that_hangs_is_reported);
     RUN_TEST(test_a_failed_self_test_keeps_the_outputs_off_and_is_repeated);

@@ -41,6 +41,11 @@ static void test_a_welded_contactor_is_found_and_blocks_sleep_and_on(void)
     TEST_ASSERT_FALSE(fake_active(&f, BQ_FAULT_CONTACTOR));
     fake_run(&f, 10);
     TEST_ASSERT_TRUE(fake_active(&f, BQ_FAULT_CONTACTOR));
+    {
+        const uint32_t steps = counters()->steps;
+        fake_run(&f, 1000);
+        TEST_ASSERT_LESS_OR_EQUAL(11, counters()->steps - steps); /* told once, not in every pass */
+    }
     TEST_ASSERT_FALSE(f.closed);
     bq_app_request(&f.app, BQ_REQUEST_SLEEP);
     fake_run(&f, 2000);
@@ -145,6 +150,7 @@ static void test_a_line_that_cannot_be_written_is_a_contactor_fault_and_tried_ag
     }
     TEST_ASSERT_TRUE(fake_active(&f, BQ_FAULT_CONTACTOR));
     TEST_ASSERT_GREATER_THAN(writes, f.writes);
+    TEST_ASSERT_EQUAL(f.writes - writes + 1u, counters()->line_failures);
     f.line_status = BQ_OK;
     for (int n = 0; n < 150; n++) {
         f.us += 1000;

@@ -300,6 +300,38 @@ static void test_a_fault_makes_it_start_anew(void)
     TEST_ASSERT_EQUAL(0, rig_bleeding(&r));
 }
 
+/* The state of charge takes the mean cell voltage at rest and the current of the sample. */
+static void test_the_state_of_charge_comes_with_the_step(void)
+{
+    static const bq_ocv_point curve[] = {{0, 3000}, {1000, 4000}};
+
+    config.soc = (bq_soc_config){curve, 2, 1000, 100, 500, 1000};
+    rig_init(&r, &config);
+    TEST_ASSERT_EQUAL(-1, r.p.summary.soc_permille);
+    current(-50);
+    rig_all_cells(&r, 3400);
+    for (int i = 0; i < 6; i++) {
+        r.cells[i].mv = 3600;
+    }
+    rig_on(&r);
+    rig_run(&r, 1000);
+    TEST_ASSERT_EQUAL(500, r.p.summary.soc_permille);
+    current(36000); /* 10 s = 0.1 Ah of 1 Ah */
+    rig_idle(&r, 0);
+    rig_run(&r, 10000);
+    TEST_ASSERT_EQUAL(600, r.p.summary.soc_permille);
+    r.s.current_age_ms = config.comm_timeout_ms + 1u; /* no longer known */
+    rig_run(&r, 1100);
+    TEST_ASSERT_EQUAL(-1, r.p.summary.soc_permille);
+    current(0);
+    r.cells[3].quality = BQ_Q_RANGE; /* no start value from an incomplete picture */
+    rig_run(&r, 2000);
+    TEST_ASSERT_EQUAL(-1, r.p.summary.soc_permille);
+    r.cells[3].quality = BQ_Q_VALID;
+    rig_scan(&r);
+    TEST_ASSERT_EQUAL(500, r.p.summary.soc_permille);
+}
+
 static void test_works_without_sensors(void)
 {
     config.sensors = 0;
@@ -332,6 +364,7 @@ int main(void)
     RUN_TEST(test_stops_at_once_for_every_doubt);
     RUN_TEST(test_a_lost_scan_only_pauses);
     RUN_TEST(test_a_fault_makes_it_start_anew);
+    RUN_TEST(test_the_state_of_charge_comes_with_the_step);
     RUN_TEST(test_works_without_sensors);
     return UNITY_END();
 }

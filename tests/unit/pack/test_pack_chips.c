@@ -236,6 +236,33 @@ static void test_an_open_wire_known_only_from_its_cells_is_enough(void)
     TEST_ASSERT_EQUAL(-1, r.p.fault[BQ_FAULT_OPEN_WIRE].wire);
 }
 
+static void test_of_several_modules_the_lowest_is_named(void)
+{
+    r.modules[0].cell_ov = 1u << 4 | 1u << 5;
+    r.modules[1].cell_ov = 1u << 0;
+    r.modules[0].sensor_ot = 2;
+    r.modules[1].sensor_ot = 1;
+    rig_scan(&r);
+    TEST_ASSERT_EQUAL(5, r.p.fault[BQ_FAULT_CHIP_CELL_OV].cell);
+    TEST_ASSERT_EQUAL(1, r.p.fault[BQ_FAULT_CHIP_CELL_OV].device);
+    TEST_ASSERT_EQUAL(2, r.p.fault[BQ_FAULT_CHIP_OVERTEMP].sensor);
+}
+
+static void test_masks_alone_are_cleared_too(void)
+{
+    r.modules[1].cell_ov = 1;
+    rig_scan(&r);
+    TEST_ASSERT_TRUE(r.a.clear_faults);
+    setUp();
+    r.modules[1].cell_uv = 1;
+    rig_scan(&r);
+    TEST_ASSERT_TRUE(r.a.clear_faults);
+    setUp();
+    r.modules[1].sensor_ot = 1;
+    rig_scan(&r);
+    TEST_ASSERT_TRUE(r.a.clear_faults);
+}
+
 static void test_every_chip_fault_recovers_by_itself_while_on_is_requested(void)
 {
     static const uint16_t flags[] = {BQ_F_CELL_OV, BQ_F_CELL_UV, BQ_F_OVERTEMP,    BQ_F_DIE_TEMP,
@@ -269,5 +296,7 @@ int main(void)
     RUN_TEST(test_an_open_wire_is_named_not_its_bouncing_cells);
     RUN_TEST(test_an_open_wire_known_only_from_its_cells_is_enough);
     RUN_TEST(test_every_chip_fault_recovers_by_itself_while_on_is_requested);
+    RUN_TEST(test_of_several_modules_the_lowest_is_named);
+    RUN_TEST(test_masks_alone_are_cleared_too);
     return UNITY_END();
 }

@@ -39,6 +39,7 @@ static void test_silence_trips_exactly_beyond_the_timeout(void)
     rig_idle(&r, config.comm_timeout_ms - RIG_AGE); /* the readings are now exactly as old as they may be */
     healthy();
     TEST_ASSERT_EQUAL(config.comm_timeout_ms, r.p.summary.blind_ms);
+    TEST_ASSERT_TRUE(r.p.summary.complete);
     rig_idle(&r, 1);
     only(BQ_FAULT_COMM_LOSS);
     TEST_ASSERT_EQUAL(1, r.p.fault[BQ_FAULT_COMM_LOSS].device);
@@ -86,7 +87,7 @@ static void test_no_sample_at_all_is_silence(void)
 
 static void test_a_sample_of_another_shape_is_silence(void)
 {
-    for (int kind = 0; kind < 6; kind++) {
+    for (int kind = 0; kind < 8; kind++) {
         setUp();
         r.s.cell_count = (uint16_t)(RIG_CELLS - (kind == 0));
         r.s.temp_count = (uint16_t)(RIG_SENSORS - (kind == 1));
@@ -94,6 +95,8 @@ static void test_a_sample_of_another_shape_is_silence(void)
         r.cells[11].module = (uint8_t)(kind == 3 ? 2 : 1); /* no such module */
         r.cells[3].module = (uint8_t)(kind == 4 ? 1 : 0);  /* not in order */
         r.temps[1].module = (uint8_t)(kind == 5 ? 2 : 0);
+        r.cells[0].module = (uint8_t)(kind == 6 ? 1 : 0);
+        r.temps[0].module = (uint8_t)(kind == 7 ? 2 : 0);
         rig_run(&r, 400);
         healthy();
         TEST_ASSERT_FALSE(r.p.summary.complete);
@@ -194,6 +197,21 @@ static void test_a_sensor_without_a_reading_is_named(void)
         rig_run(&r, 1200);
         healthy();
     }
+}
+
+static void test_the_reading_named_is_one_of_the_blind_module(void)
+{
+    for (int n = 0; n < 6;
+         n++) { /* cell 9 and sensor 3 are bad all the time, cell 2 and sensor 1 now and then */
+        r.cells[8].quality = BQ_Q_RANGE;
+        r.temps[2].quality = BQ_Q_SENSOR;
+        r.cells[1].quality = n % 2 == 0 ? BQ_Q_VALID : BQ_Q_RANGE;
+        r.temps[0].quality = n % 2 == 0 ? BQ_Q_VALID : BQ_Q_SENSOR;
+        rig_scan(&r);
+    }
+    TEST_ASSERT_EQUAL(1u << BQ_FAULT_NO_READING | 1u << BQ_FAULT_SENSOR, r.p.faults);
+    TEST_ASSERT_EQUAL(9, r.p.fault[BQ_FAULT_NO_READING].cell);
+    TEST_ASSERT_EQUAL(3, r.p.fault[BQ_FAULT_SENSOR].sensor);
 }
 
 static void test_a_pack_without_sensors_needs_none(void)
@@ -320,6 +338,7 @@ int main(void)
     RUN_TEST(test_an_age_beyond_the_timeout_trips_although_marked_valid);
     RUN_TEST(test_a_cell_without_a_reading_is_named);
     RUN_TEST(test_a_sensor_without_a_reading_is_named);
+    RUN_TEST(test_the_reading_named_is_one_of_the_blind_module);
     RUN_TEST(test_a_pack_without_sensors_needs_none);
     RUN_TEST(test_a_value_never_seen_valid_is_not_judged);
     RUN_TEST(test_the_log_tells_the_story_in_order);

@@ -317,6 +317,21 @@ static void test_separate_paths_never_switch_a_direction_back_on_in_a_fault(void
     TEST_ASSERT_FALSE(r.a.charge_on || r.a.discharge_on);
 }
 
+static void test_separate_paths_open_before_sleep(void)
+{
+    config.separate_paths = true;
+    rig_init(&r, &config);
+    rig_on(&r);
+    r.cells[8].mv = 2999;
+    rig_run(&r, 400);
+    TEST_ASSERT_TRUE(r.a.charge_on && !r.a.discharge_on);
+    r.in.request = BQ_REQUEST_SLEEP;
+    rig_scan(&r);
+    TEST_ASSERT_FALSE(r.a.charge_on || r.a.sleep);
+    rig_scan(&r);
+    TEST_ASSERT_TRUE(r.a.sleep);
+}
+
 static void test_imbalance_off_ignores_any_spread(void)
 {
     rig_init(&r, &config);
@@ -368,6 +383,7 @@ int main(void)
     RUN_TEST(test_debounce_goes_on_without_new_pictures);
     RUN_TEST(test_separate_paths_stop_only_what_the_table_says);
     RUN_TEST(test_separate_paths_never_switch_a_direction_back_on_in_a_fault);
+    RUN_TEST(test_separate_paths_open_before_sleep);
     RUN_TEST(test_imbalance_off_ignores_any_spread);
     RUN_TEST(test_cells_outside_the_recommended_range_are_always_flagged);
     return UNITY_END();
