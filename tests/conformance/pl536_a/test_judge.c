@@ -137,7 +137,7 @@ static void test_codes_of_the_special_registers(void)
     TEST_ASSERT_TRUE(bench_silent(1));
 }
 
-/* proves: PL-OTP-04, PL-AMB-111, PL-AMB-105 */
+/* proves: PL-OTP-04 */
 static void test_programming_rules(void)
 {
     clean();
