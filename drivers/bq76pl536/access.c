@@ -85,6 +85,12 @@ bq_status pl_job_shadow(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_BEGIN(f)
     for (;;) {
         SEQ_SEND(f, pl_send_write(d, f->dev, BQ76PL536_SHDW_CTRL, BQ76PL536_SHDW_KEY));
+        if (d->transfer != BQ_OK) { /* without the key the write would be in vain */
+            if (++f->tries >= PL_TRIES) {
+                return d->transfer;
+            }
+            continue;
+        }
         SEQ_SEND(f, pl_send_write(d, f->dev, f->reg, f->val));
         if (f->dev == BQ76PL536_ADDR_BROADCAST) {
             return BQ_OK;

@@ -51,7 +51,8 @@ static uint16_t differences(const bq76pl536 *d, unsigned n, const uint8_t *data)
     return (uint16_t)diff;
 }
 
-/* What all devices have in common goes out by broadcast; `val` = RAISE and LOWER of the stack. Nothing is verified here. */
+/* What all devices have in common goes out by broadcast; `val` = RAISE and LOWER of the stack. Verified is only
+ * what the next step needs: ADC_ON, CN of unequal devices, the first threshold. */
 bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -72,6 +73,12 @@ bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
             continue;
         }
         SEQ_CALL(d, f, PL_JOB_SHADOW, BQ76PL536_ADDR_BROADCAST, f->reg, pl_image(d, 1, f->reg));
+        for (f->n = 1; f->i == 1u && f->n <= d->found; f->n++) { /* the first threshold, before the second leans on it */
+            SEQ_TRY(d, f, PL_JOB_READ, f->n, f->reg, 1);
+            if (pl_data(d)[0] != pl_image(d, f->n, f->reg)) {
+                SEQ_TRY(d, f, PL_JOB_SHADOW, f->n, f->reg, pl_image(d, f->n, f->reg));
+            }
+        }
     }
     return BQ_OK;
     SEQ_END;
@@ -187,8 +194,9 @@ bq_status pl_job_lines(bq76pl536 *d, bq76pl536_frame *f)
         SEQ_TRY(d, f, PL_JOB_READ, f->n, BQ76PL536_ALERT_STATUS, 2);
         pl_dev(d, f->n)->alert = pl_data(d)[0];
         pl_dev(d, f->n)->fault = pl_data(d)[1];
-        f->x |= pl_data(d)[0] != 0u ? 1u : 0u;
-        f->x |= pl_data(d)[1] != 0u ? 2u : 0u;
+        SEQ_TRY(d, f, PL_JOB_READ, f->n, BQ76PL536_DEVICE_STATUS, 1); /* ALERT may stand for ECC_COR alone (PL-AMB-48) */
+        f->x |= (pl_data(d)[0] & BQ76PL536_DS_ALERT) != 0u ? 1u : 0u;
+        f->x |= (pl_data(d)[0] & BQ76PL536_DS_FAULT) != 0u ? 2u : 0u;
     }
     d->diagnosis.fault_line_stuck = false;
     d->diagnosis.alert_line_stuck = false;

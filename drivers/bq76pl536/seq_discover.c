@@ -55,7 +55,12 @@ bq_status pl_job_height(bq76pl536 *d, bq76pl536_frame *f)
             d->crc = true;
             SEQ_WAIT(d, f, PL_RESET_US);
         }
-        SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_RESET, BQ76PL536_RESET_CODE));
+        for (f->tries = 0; f->tries < PL_TRIES; f->tries++) { /* unsent, the first assignment would go to the next device */
+            SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_RESET, BQ76PL536_RESET_CODE));
+            if (d->transfer == BQ_OK) {
+                break;
+            }
+        }
         SEQ_WAIT(d, f, PL_RESET_US);
         watch_alert(d);
         for (f->i = 1; f->i <= f->n; f->i++) {
