@@ -32,9 +32,8 @@ static void guard_start(const sim_pl *s, sim_pl_guard *g, unsigned inputs)
     g->pending |= (uint8_t)inputs;
 }
 
-/* The comparators moved. `held`: inputs that may not be reported now (PL-AMB-33); `sticky`: PL-AMB-40.
- * Returns true if the flag rises. */
-static bool guard_move(const sim_pl *s, sim_pl_guard *g, unsigned active, unsigned held, bool sticky)
+/* The comparators moved. `held`: inputs that may not be reported now (PL-AMB-33); `sticky`: PL-AMB-40. */
+static void guard_move(const sim_pl *s, sim_pl_guard *g, unsigned active, unsigned held, bool sticky)
 {
     unsigned rose = active & ~(unsigned)g->active;
     unsigned fell = g->active & ~active;
@@ -43,14 +42,13 @@ static bool guard_move(const sim_pl *s, sim_pl_guard *g, unsigned active, unsign
     if (g->delay_ns == 0) {
         guard_stop(g, 0x3f);
         g->latched = (uint8_t)(active & ~held);
-        return g->latched != 0;
+        return;
     }
     guard_stop(g, fell);
     guard_start(s, g, rose & ~(unsigned)g->latched & ~held);
     if (sticky) {
         g->latched &= (uint8_t)~fell;
     }
-    return false;
 }
 
 /* Inputs whose delay ends now. */
@@ -167,15 +165,14 @@ static void publish(const sim_pl *s, sim_pl_dev *d, unsigned set)
 void sim_pl_protect_check(sim_pl *s, sim_pl_dev *d)
 {
     bool sticky = s->options.amb40_sticky_cells;
-    unsigned set = 0;
 
     if (!watching(d)) {
         return;
     }
-    set |= guard_move(s, &d->cov, over(d), inputs_of(d->hold_fault, FA_COV), sticky) ? FA_COV : 0u;
-    set |= guard_move(s, &d->cuv, under(d), inputs_of(d->hold_fault, FA_CUV), sticky) ? FA_CUV : 0u;
+    guard_move(s, &d->cov, over(d), inputs_of(d->hold_fault, FA_COV), sticky);
+    guard_move(s, &d->cuv, under(d), inputs_of(d->hold_fault, FA_CUV), sticky);
     guard_move(s, &d->ot, hot(d), d->hold_alert & AL_OT, false);
-    publish(s, d, set);
+    publish(s, d, 0);
 }
 
 void sim_pl_protect_due(sim_pl *s, sim_pl_dev *d)

@@ -1,45 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Injected bus faults, stacks, and waveforms of the bq76PL536 model. */
-#include "sim_pl536.h"
+#include "sim_bench.h"
 #include "sim_vcd.h"
-#include "unity.h"
-#include <stdlib.h>
 #include <string.h>
-
-static sim_pl s;
-static uint8_t rx[64], driven[64];
-
-static uint8_t crc8(const uint8_t *bytes, size_t n)
-{
-    unsigned crc = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        crc ^= bytes[i];
-        for (int k = 0; k < 8; k++) {
-            crc = (crc & 0x80) != 0 ? (crc << 1 ^ 0x07) & 0xff : crc << 1;
-        }
-    }
-    return (uint8_t)crc;
-}
-
-static void put(unsigned address, unsigned reg, unsigned value)
-{
-    uint8_t tx[4] = {(uint8_t)(address << 1 | 1), (uint8_t)reg, (uint8_t)value, 0};
-
-    tx[3] = crc8(tx, 3);
-    sim_pl_spi(&s, tx, rx, driven, 4);
-}
-
-/* Reads one register; -1 when the answer does not fit the request. */
-static int get(unsigned address, unsigned reg)
-{
-    uint8_t tx[5] = {(uint8_t)(address << 1), (uint8_t)reg, 1, 0, 0};
-    uint8_t check[4] = {tx[0], tx[1], tx[2], 0};
-
-    sim_pl_spi(&s, tx, rx, driven, 5);
-    check[3] = rx[3];
-    return crc8(check, 4) == rx[4] && driven[3] && driven[4] ? rx[3] : -1;
-}
 
 static void stack_of(int devices)
 {
@@ -70,6 +33,68 @@ static void test_lost_device_hides_those_above(void)
     TEST_ASSERT_EQUAL(0x00, get(0, 0x3b));
     put(0, 0x3b, 2);
     TEST_ASSERT_EQUAL(0x83, get(3, 0x3b));
+}
+
+/* proves: PL-VB-06, PL-CONV-07 */
+static void test_conv_returns_with_a_device_and_is_an_edge_above_it(void)
+{
+    sim_pl_set_conv(&s, true);
+    sim_pl_advance(&s, 2 * SIM_PL_MS);
+    put(1, 0x3c, 0xa5);
+    sim_pl_advance(&s, 500 * SIM_PL_US);
+    TEST_ASSERT_EQUAL(1, sim_pl_conversions(&s, 2));
+    sim_pl_advance(&s, SIM_PL_MS);
+    TEST_ASSERT_EQUAL(1, sim_pl_conversions(&s, 1));
+    TEST_ASSERT_EQUAL(2, sim_pl_conversions(&s, 2));
+    TEST_ASSERT_EQUAL(2, sim_pl_conversions(&s, 3));
+    sim_pl_set_link(&s, 1, true);
+    sim_pl_set_link(&s, 1, false);
+    sim_pl_set_link(&s, 1, true); /* bounces: not the host's edges */
+    sim_pl_set_link(&s, 1, false);
+    sim_pl_advance(&s, SIM_PL_MS);
+    TEST_ASSERT_EQUAL(3, sim_pl_conversions(&s, 3));
+}
+
+/* Discovery meets addresses of an earlier run; only addresses of the present one count as given twice. */
+static void test_stale_addresses_are_no_mistake(void)
+{
+    sim_pl_set_link(&s, 1, true);
+    put(0x3f, 0x3c, 0xa5);
+    sim_pl_advance(&s, SIM_PL_MS);
+    sim_pl_set_link(&s, 1, false);
+    put(0, 0x3b, 2); /* the next device still has 2 */
+    TEST_ASSERT_EQUAL(0x82, get(2, 0x3b));
+    TEST_ASSERT_EQUAL(0, sim_pl_misuse(&s)->count);
+    put(0x3f, 0x3c, 0xa5);
+    sim_pl_advance(&s, SIM_PL_MS);
+    put(0, 0x3b, 1);
+    put(0, 0x3b, 1);
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-ADR-15"));
+    TEST_ASSERT_EQUAL(0x81, get(1, 0x3b));
+    TEST_ASSERT_EQUAL(1, sim_misuse_of(sim_pl_misuse(&s), "PL-AMB-15"));
+    sim_misuse_clear(sim_pl_misuse(&s));
+}
+
+/* The successor part: a CRC error that stays off the line, when asked for. */
+static void test_variant_keeps_crc_errors_off_the_line(void)
+{
+    static const sim_pl_options a = {.variant_a = true};
+    static const uint8_t spoilt[4] = {0x03, 0x30, 0x05, 0x00};
+
+    for (unsigned quiet = 0; quiet <= 0x80; quiet += 0x80) {
+        sim_pl_init(&s, 1, &a);
+        put(0, 0x3b, 1);
+        put(1, 0x3a, 0x35);
+        put(1, 0x42, 0x80);
+        put(1, 0x3a, 0x35);
+        put(1, 0x41, quiet);
+        put(1, 0x21, 0x08);
+        TEST_ASSERT_EQUAL(0, sim_pl_fault_pin(&s));
+        sim_pl_spi(&s, spoilt, rx, driven, 4);
+        TEST_ASSERT_EQUAL_HEX8(0x04, sim_pl_peek(&s, 1, 0x21));
+        TEST_ASSERT_EQUAL(quiet == 0, sim_pl_fault_pin(&s));
+    }
+    sim_misuse_clear(sim_pl_misuse(&s));
 }
 
 static void test_flips_are_seen_and_not_judged(void)
@@ -153,6 +178,8 @@ static void test_wrong_device_break_and_brownout(void)
 {
     struct sim_bus_fault *f = sim_pl_bus_fault(&s);
 
+    f->wrong_device = 1;
+    TEST_ASSERT_EQUAL(0x81, get(2, 0x3b));
     f->wrong_device = 3;
     TEST_ASSERT_EQUAL(0x83, get(1, 0x3b));
     f->wrong_device = 0;
@@ -322,6 +349,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_lost_device_hides_those_above);
+    RUN_TEST(test_conv_returns_with_a_device_and_is_an_edge_above_it);
+    RUN_TEST(test_stale_addresses_are_no_mistake);
+    RUN_TEST(test_variant_keeps_crc_errors_off_the_line);
     RUN_TEST(test_flips_are_seen_and_not_judged);
     RUN_TEST(test_lost_key_is_not_judged);
     RUN_TEST(test_what_a_lost_write_leaves_is_not_judged_at_once);

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every option of the bq76PL536 model, seen from the bus in both positions; the misuse book; waveform files
  * that fail. */
-#include "sim_pl536.h"
+#include "sim_bench.h"
 #include "sim_vcd.h"
-#include "unity.h"
 #include <stdio.h>
 #include <string.h>
-
-static sim_pl s;
-static uint8_t rx[64], driven[64];
 
 void setUp(void)
 {
@@ -18,43 +14,11 @@ void tearDown(void)
 {
 }
 
-static uint8_t crc8(const uint8_t *bytes, size_t n)
-{
-    unsigned crc = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        crc ^= bytes[i];
-        for (int k = 0; k < 8; k++) {
-            crc = (crc & 0x80) != 0 ? (crc << 1 ^ 0x07) & 0xff : crc << 1;
-        }
-    }
-    return (uint8_t)crc;
-}
-
-static void put(unsigned address, unsigned reg, unsigned value)
-{
-    uint8_t tx[4] = {(uint8_t)(address << 1 | 1), (uint8_t)reg, (uint8_t)value, 0};
-
-    tx[3] = crc8(tx, 3);
-    sim_pl_spi(&s, tx, rx, driven, 4);
-}
-
-static void key_put(unsigned address, unsigned reg, unsigned value)
-{
-    put(address, 0x3a, 0x35);
-    put(address, reg, value);
-}
-
 static void spoilt(unsigned address, unsigned reg)
 {
     uint8_t tx[4] = {(uint8_t)(address << 1 | 1), (uint8_t)reg, 0, 0x5a};
 
     sim_pl_spi(&s, tx, rx, driven, 4);
-}
-
-static int reg(int device, unsigned address)
-{
-    return sim_pl_peek(&s, device, (uint8_t)address);
 }
 
 /* Two addressed devices without flags, COV and CUV off. */
@@ -69,7 +33,7 @@ static void ready(const sim_pl_options *options)
     put(0x3f, 0x20, 0x00);
     put(0x3f, 0x21, 0x08);
     put(0x3f, 0x21, 0x00);
-    TEST_ASSERT_EQUAL_HEX8(0x81, reg(1, 0) | 0x01);
+    TEST_ASSERT_EQUAL_HEX8(0x81, peek(1, 0) | 0x01);
 }
 
 /* Each option once: returns what the host sees; it must differ between off and on as the table says. */
@@ -83,13 +47,13 @@ static int crc_after_good_write(void)
 {
     spoilt(1, 0x30);
     put(1, 0x30, 0x05);
-    return reg(1, 0x21);
+    return peek(1, 0x21);
 }
 
 static int crc_of_bystander(void)
 {
     spoilt(1, 0x30);
-    return reg(2, 0x21);
+    return peek(2, 0x21);
 }
 
 static int idle_level(void)
@@ -103,7 +67,7 @@ static int broadcast_to_unaddressed(void)
     put(2, 0x3c, 0xa5);
     sim_pl_advance(&s, SIM_PL_MS);
     put(0x3f, 0x30, 0x05);
-    return reg(2, 0x30);
+    return peek(2, 0x30);
 }
 
 static int bare_address(void)
@@ -111,7 +75,7 @@ static int bare_address(void)
     put(2, 0x3c, 0xa5);
     sim_pl_advance(&s, SIM_PL_MS);
     put(0, 0x3b, 0x02);
-    return reg(2, 0x3b);
+    return peek(2, 0x3b);
 }
 
 static int ar_after_address(void)
@@ -119,14 +83,14 @@ static int ar_after_address(void)
     put(2, 0x3c, 0xa5);
     sim_pl_advance(&s, SIM_PL_MS);
     put(0, 0x3b, 0x82);
-    return reg(2, 0x20);
+    return peek(2, 0x20);
 }
 
 static int latch_between_one_and_zero(void)
 {
     put(1, 0x21, 0x04);
     spoilt(1, 0x30);
-    return reg(1, 0x21);
+    return peek(1, 0x21);
 }
 
 static int cells_after_clear(void)
@@ -136,7 +100,7 @@ static int cells_after_clear(void)
     sim_pl_set_cell(&s, 1, 2, 4.3);
     sim_pl_advance(&s, SIM_PL_MS);
     put(1, 0x21, 0x01);
-    return reg(1, 0x22) << 8 | reg(1, 0x21);
+    return peek(1, 0x22) << 8 | peek(1, 0x21);
 }
 
 static int corrected(void)
@@ -146,14 +110,14 @@ static int corrected(void)
     key_put(1, 0x42, 0x80);
     key_put(1, 0x44, 0x80);
     put(1, 0x21, 0x03);
-    return reg(1, 0x00) | sim_pl_alert_pin(&s) << 8;
+    return peek(1, 0x00) | sim_pl_alert_pin(&s) << 8;
 }
 
 static int uncorrectable(void)
 {
     sim_pl_damage_otp(&s, 1, 0x48, 0x03);
     put(1, 0x3a, 0x27);
-    return reg(1, 0x21) & 0x20;
+    return peek(1, 0x21) & 0x20;
 }
 
 static int alert_after_sleep(void)
@@ -161,14 +125,14 @@ static int alert_after_sleep(void)
     put(1, 0x31, 0x04);
     put(1, 0x20, 0x04);
     put(1, 0x31, 0x00);
-    return reg(1, 0x20);
+    return peek(1, 0x20);
 }
 
 static int por_after_command(void)
 {
     put(2, 0x3c, 0xa5);
     sim_pl_advance(&s, SIM_PL_MS);
-    return reg(2, 0x21) & 0x08;
+    return peek(2, 0x21) & 0x08;
 }
 
 static int cycle_us(void)
@@ -182,12 +146,12 @@ static int cycle_us(void)
 static int conv_bit(void)
 {
     (void)cycle_us();
-    return reg(1, 0x34);
+    return peek(1, 0x34);
 }
 
 static int first_drdy(void)
 {
-    return reg(1, 0x00) & 0x01;
+    return peek(1, 0x00) & 0x01;
 }
 
 static int drdy_of_stack(void)
@@ -219,7 +183,7 @@ static int cb_ctrl_after_expiry(void)
 {
     (void)balancing_s();
     sim_pl_advance(&s, 60 * SIM_PL_S);
-    return reg(1, 0x32);
+    return peek(1, 0x32);
 }
 
 static int cb_in_sleep(void)
@@ -242,13 +206,13 @@ static int key_after_discarded_write(void)
     put(1, 0x3a, 0x35);
     spoilt(1, 0x30);
     put(1, 0x47, 0x0a);
-    return reg(1, 0x47);
+    return peek(1, 0x47);
 }
 
 static int user(void)
 {
     key_put(1, 0x48, 0x5a);
-    return reg(1, 0x48);
+    return peek(1, 0x48);
 }
 
 static int function_config(void)
@@ -256,7 +220,7 @@ static int function_config(void)
     put(1, 0x30, 0x40);
     key_put(1, 0x40, 0x5c);
     key_put(1, 0x41, 0x80);
-    return reg(1, 0x40) << 8 | reg(1, 0x41);
+    return peek(1, 0x40) << 8 | peek(1, 0x41);
 }
 
 static int delay_us(void)
@@ -274,7 +238,7 @@ static int gpai_code(void)
     put(1, 0x30, 0x08);
     put(1, 0x34, 0x01);
     sim_pl_advance(&s, SIM_PL_MS);
-    return reg(1, 0x01) << 8 | reg(1, 0x02);
+    return peek(1, 0x01) << 8 | peek(1, 0x02);
 }
 
 static int wire_codes(void)
@@ -283,7 +247,7 @@ static int wire_codes(void)
     put(1, 0x30, 0x05);
     put(1, 0x34, 0x01);
     sim_pl_advance(&s, SIM_PL_MS);
-    return (reg(1, 0x07) << 8 | reg(1, 0x08)) << 16 | reg(1, 0x09) << 8 | reg(1, 0x0a);
+    return (peek(1, 0x07) << 8 | peek(1, 0x08)) << 16 | peek(1, 0x09) << 8 | peek(1, 0x0a);
 }
 
 #define OPTION(member, value)                                                                                \
@@ -354,11 +318,11 @@ static void test_noise_is_seeded_and_has_the_size_asked_for(void)
 
             put(1, 0x34, 0x01);
             sim_pl_advance(&s, SIM_PL_MS);
-            mv = ((reg(1, 0x03) << 8) + reg(1, 0x04)) * 6250.0 / 16383.0 - 3600.0;
+            mv = ((peek(1, 0x03) << 8) + peek(1, 0x04)) * 6250.0 / 16383.0 - 3600.0;
             sum += mv;
             squares += mv * mv;
             if (i < 3) {
-                first[run][i] = reg(1, 0x03) << 8 | reg(1, 0x04);
+                first[run][i] = peek(1, 0x03) << 8 | peek(1, 0x04);
             }
         }
     }
@@ -378,7 +342,7 @@ static void test_offsets_are_fixed_and_within_their_bound(void)
         put(1, 0x34, 0x01);
         sim_pl_advance(&s, SIM_PL_MS);
         for (unsigned cell = 0; cell < 6; cell++) {
-            int code = reg(1, 3 + 2 * cell) << 8 | reg(1, 4 + 2 * cell);
+            int code = peek(1, 3 + 2 * cell) << 8 | peek(1, 4 + 2 * cell);
 
             lowest = code < lowest ? code : lowest;
             highest = code > highest ? code : highest;
