@@ -13,7 +13,11 @@ page=$(mktemp)
 trap 'rm -f "$page"' EXIT
 
 arm() { have arm-none-eabi-gcc; }
-version() { "$1" -v 2>&1 | tail -n 1; }
+version() { # "gcc 12.2.0", "arm-none-eabi-gcc 12.2.1"
+    local target=
+    case $1 in *-gcc) target=${1%gcc} ;; esac
+    "$1" -v 2>&1 | sed -n "s/^\\(.*\\) version \\([^ ]*\\).*/$target\\1 \\2/p" | head -n 1
+}
 
 build() { # build CRC_FORM TARGET: an optimised build with line numbers, which change nothing
     local tree=$root/build/bench-$1
@@ -102,6 +106,8 @@ TEXT
 }
 
 size_part() {
+    local objects images=
+    objects=$(sh tools/size.sh cc -Os)
     cat <<TEXT
 
 ## Size
@@ -113,16 +119,22 @@ heap, no floating point, no standard I/O.
 
 $(version cc):
 
-$(sh tools/size.sh cc -Os)
+$objects
 TEXT
     arm || return 0
+    objects=$(sh tools/size.sh arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb)
+    local cpu
+    for cpu in cortex-m0 cortex-m4; do
+        images+="| bq76PL536 driver alone | $cpu | $(linked $cpu) |"$'\n'
+        images+="| driver, pack controller and super-loop | $cpu | $(linked $cpu -DWHOLE) |"$'\n'
+    done
     cat <<TEXT
 
     tools/size.sh arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb
 
 $(version arm-none-eabi-gcc):
 
-$(sh tools/size.sh arm-none-eabi-gcc -Os -mcpu=cortex-m0 -mthumb)
+$objects
 
 What a linker keeps of it, with the smallest possible board (\`tools/bench/image.c\`, 32 devices, \`BQHOST_OTP\` off); flash includes the
 compiler's helpers, RAM is everything the firmware owns but the stack:
@@ -131,10 +143,7 @@ compiler's helpers, RAM is everything the firmware owns but the stack:
 
 | image | core | flash | RAM |
 |---|---|---|---|
-| driver alone | Cortex-M0 | $(linked cortex-m0) |
-| driver, pack controller and super-loop | Cortex-M0 | $(linked cortex-m0 -DWHOLE) |
-| driver alone | Cortex-M4 | $(linked cortex-m4) |
-| driver, pack controller and super-loop | Cortex-M4 | $(linked cortex-m4 -DWHOLE) |
+${images%$'\n'}
 TEXT
 }
 
