@@ -28,9 +28,13 @@ void sim_cells_pl_feed(sim_cells *c, sim_pl *s)
     }
 }
 
-void sim_cells_pl_observe(sim_cells *c, const sim_pl *s, double dt_s)
+bool sim_cells_pl_observe(sim_cells *c, const sim_pl *s, double dt_s)
 {
+    uint32_t any = 0;
     for (int m = 1; m <= c->config.modules; m++) {
-        sim_cells_bleed(c, m, sim_pl_cb(s, m), dt_s);
+        uint32_t mask = sim_pl_cb(s, m);
+        sim_cells_bleed(c, m, mask, dt_s);
+        any |= mask;
     }
+    return any != 0u;
 }

@@ -16,7 +16,7 @@
 void sim_cells_pl_feed(sim_cells *c, sim_pl *s);
 
 /** Books the balancing outputs as they stand for the `dt_s` seconds just passed. Call it before anything can
- * have changed them. */
-void sim_cells_pl_observe(sim_cells *c, const sim_pl *s, double dt_s);
+ * have changed them. Returns true if any is on. */
+bool sim_cells_pl_observe(sim_cells *c, const sim_pl *s, double dt_s);
 
 #endif

@@ -7,6 +7,7 @@
 
 #define WORLD_STEP (100 * PS_MS)
 #define OBSERVE_STEP (4 * PS_MS) /* resolution of balancing times while the bus is busy */
+#define BLED_LATELY (20 * PS_S)  /* without balancing for so long: look only once per world step */
 #define POISON 0xa5
 #define FUNCTION_CONFIG 0x40
 #define FAST_CONVERSIONS 0x50 /* ADCT = 01b: 6 us */
@@ -41,7 +42,9 @@ static void observe(ps_rig *r)
 {
     uint64_t now = ps_rig_now(r);
     if (now > r->observed_t) {
-        sim_cells_pl_observe(&r->world, &r->pl, (double)(now - r->observed_t) / 1e9);
+        if (sim_cells_pl_observe(&r->world, &r->pl, (double)(now - r->observed_t) / 1e9)) {
+            r->bled_t = now;
+        }
         r->observed_t = now;
     }
 }
@@ -76,7 +79,7 @@ void ps_rig_advance(ps_rig *r, uint64_t ns)
         if (now == next) {
             world_step(r);
             show(r);
-        } else if (now - r->observed_t >= OBSERVE_STEP) {
+        } else if (now - r->observed_t >= OBSERVE_STEP && now - r->bled_t < BLED_LATELY) {
             observe(r);
         }
     }

@@ -44,6 +44,7 @@ typedef struct ps_rig {
     bool recording;
     uint64_t step;       /**< of the world */
     uint64_t world_t;    /**< moment the world stands at */
+    uint64_t bled_t;     /**< when an output was last seen on */
     uint64_t observed_t; /**< balancing outputs booked up to here */
     double world_a;      /**< current at world_t */
     bool line_on, welded;
