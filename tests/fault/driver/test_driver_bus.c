@@ -46,8 +46,8 @@ static unsigned check_truth(unsigned mv)
     return valid;
 }
 
-/* A bit error rate at which a tenth of the bursts is damaged. Conversions start by pin: a broadcast whose address is hit reaches
- * nobody and leaves no trace.
+/* A bit error rate at which a tenth of the bursts is damaged. Conversions start by pin: a broadcast whose
+ * address is hit reaches nobody and leaves no trace.
  * proves: PL-SEQ-06-05, PL-SEQ-06-08, PL-CRC-07 */
 static void noise_costs_retries_not_truth(void)
 {
@@ -93,7 +93,8 @@ static void every_bit_of_a_burst_may_flip(void)
     }
 }
 
-/* Every bit of the start; a start that nobody took (the address was hit) is lost without a trace and not provable here.
+/* Every bit of the start; a start that nobody took (the address was hit) is lost without a trace and not
+ * provable here.
  * proves: PL-SEQ-06-08, PL-SEQ-08-04 */
 static void a_damaged_start_is_repeated(void)
 {
@@ -106,7 +107,8 @@ static void a_damaged_start_is_repeated(void)
     }
 }
 
-/* Answers of another device, late answers, stuck and short ones: never believed, always over when the fault is. */
+/* Answers of another device, late answers, stuck and short ones: never believed, always over when the fault
+ * is. */
 static void other_damage_is_never_believed(void)
 {
     for (int kind = 0; kind < 7; kind++) {
