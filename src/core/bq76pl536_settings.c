@@ -217,8 +217,7 @@ bq_status bq76pl536_spi_max_hz(uint8_t devices, uint32_t *hz)
 {
     bq_status status = devices_legal(devices, hz);
     if (status == BQ_OK) {
-        uint32_t delay_ns = devices == 1u ? 110u : 20u + 70u * devices;
-        uint32_t khz = 400000u / delay_ns;
+        uint32_t khz = 400000u / (20u + 70u * devices); /* delay in ns; a single device is far beyond the limit */
         *hz = (khz > 1000u ? 1000u : khz) * 1000u;
     }
     return status;

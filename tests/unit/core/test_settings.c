@@ -253,6 +253,7 @@ static void test_adc_control(void)
     TEST_ASSERT_EQUAL_HEX8(0x05, adc(6, 0, false, false));
     TEST_ASSERT_EQUAL_HEX8(0x43, adc(4, 0, false, true));
     TEST_ASSERT_EQUAL_HEX8(0x42, adc(3, 0, false, true));
+    TEST_ASSERT_EQUAL_HEX8(0x04, adc(5, 0, false, false));
     TEST_ASSERT_EQUAL_HEX8(0x10, adc(3, 1, false, false) & 0x30u);
     TEST_ASSERT_EQUAL_HEX8(0x20, adc(3, 2, false, false) & 0x30u);
     TEST_ASSERT_EQUAL_HEX8(0x30, adc(3, 3, false, false) & 0x30u);

@@ -99,6 +99,17 @@ static void test_a_table_of_two_extreme_points(void)
     TEST_ASSERT_INT_WITHIN(1, 16384, dc);
 }
 
+static void test_the_finest_table(void)
+{
+    static const uint32_t ohms[3] = {30, 20, 10};
+    static const bq_thermistor fine = {ohms, 3, 250, 1};
+    int16_t dc = 0;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq_thermistor_dc(&fine, 16, &dc));
+    TEST_ASSERT_EQUAL_INT(251, dc);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq_thermistor_dc(&fine, 15, &dc));
+    TEST_ASSERT_EQUAL_INT(252, dc);
+}
+
 static void test_impossible_tables_are_refused(void)
 {
     static const uint32_t ohms[2] = {2000, 1000};
@@ -122,6 +133,7 @@ int main(void)
     RUN_TEST(test_from_code_to_temperature);
     RUN_TEST(test_outside_the_table_the_nearest_end_is_given_with_an_error);
     RUN_TEST(test_a_table_of_two_extreme_points);
+    RUN_TEST(test_the_finest_table);
     RUN_TEST(test_impossible_tables_are_refused);
     return UNITY_END();
 }
