@@ -65,6 +65,18 @@ static void judge_order(int i, const char *where)
     }
 }
 
+/* 1, then 0 directly after it, to the same device (PL-FLT-12); FORCE stays for the length of a self-test. */
+static void judge_pair(int i, int end, const char *where)
+{
+    const bench_packet *p = &b.log[i];
+    if (IS_WRITE(p) && (p->tx[1] == 0x20 || p->tx[1] == 0x21) && p->tx[2] != 0 && p->tx[2] != 0x10 &&
+        i + 1 < end && b.packets == b.transfers) {
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(p->tx[0], p[1].tx[0], where);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(p->tx[1], p[1].tx[1], where);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(0x00, p[1].tx[2], where);
+    }
+}
+
 void bench_judge_packets(void)
 {
     int end = b.packets < BENCH_LOG ? (int)b.packets : BENCH_LOG;
@@ -79,5 +91,6 @@ void bench_judge_packets(void)
             judge_read(p, where);
         }
         judge_order(i, where);
+        judge_pair(i, end, where);
     }
 }

@@ -192,6 +192,65 @@ static void order_of_sleep_and_wake(void)
     bench_judge_packets();
 }
 
+/* proves: PL-SEQ-11-05, PL-SEQ-11-06, PL-SLEEP-09, PL-TIM-24, PL-TIM-16 */
+static void waits_of_the_wake_up_on_a_fast_bus(void)
+{
+    bench_up(1, NULL);
+    b.config.spi_hz = 1000000;
+    b.config.sensors = 0;
+    b.config.ot_c[0] = b.config.ot_c[1] = 0;
+    bench_ready_from();
+    EXPECT_STATUS(BQ_OK, bench_sleep());
+    bench_wait_ms(100);
+    bench_mark();
+    EXPECT_STATUS(BQ_OK, bench_wake());
+    EXPECT_STATUS(BQ_OK, bench_scan());
+    int leave = -1, adc = -1, convert = -1;
+    for (uint32_t i = 0; i < b.packets; i++) {
+        const bench_packet *p = &b.log[i];
+        leave = leave < 0 && IS_WRITE(p) && p->tx[1] == 0x31 ? (int)i : leave;
+        adc = adc < 0 && IS_WRITE(p) && p->tx[1] == 0x30 ? (int)i : adc;
+        convert = convert < 0 && IS_WRITE(p) && p->tx[1] == 0x34 ? (int)i : convert;
+    }
+    TEST_ASSERT_TRUE(leave >= 0 && leave < adc && adc < convert);
+    TEST_ASSERT_TRUE(b.log[adc].t_us - b.log[leave].t_us >= 1000);
+    TEST_ASSERT_TRUE(b.log[convert].t_us - b.log[adc].t_us >= 1000);
+}
+
+/* proves: PL-CB-13, PL-CB-17, PL-AMB-88, PL-SEQ-10-03 */
+static void every_cell_of_the_tallest_stack_by_its_number(void)
+{
+    static const uint8_t mixed[62] = {3, 4, 5, 6, 3, 6, 5, 4, 6, 6, 3, 3, 4, 5, 6, 6, 6, 6, 6, 6, 6,
+                                      6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6,
+                                      6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 3};
+    for (int kind = 0; kind <= 1; kind++) {
+        bench_up(62, NULL);
+        b.config.cells = kind ? mixed : NULL;
+        for (int d = 1; kind && d <= 62; d++) {
+            for (int c = mixed[d - 1] + 1; c <= 6; c++) {
+                sim_pl_set_cell(&b.pl, d, c, 0.0);
+            }
+        }
+        bench_ready_from();
+        uint16_t n = 0;
+        for (int d = 1; d <= 62; d++) {
+            int cells = kind ? mixed[d - 1] : 6;
+            for (int c = 1; c <= cells; c++) {
+                n++;
+                if (d % 5 != 1 && d != 62 && kind == 0) {
+                    continue;
+                }
+                bq_action action = {.charge_on = true};
+                bq_mask_set(action.balance, n);
+                EXPECT_STATUS(BQ_OK, bench_scan());
+                EXPECT_STATUS(BQ_OK, bench_apply(&action));
+                expect_outputs(62, d, 1u << (c - 1));
+            }
+        }
+        bench_no_misuse();
+    }
+}
+
 /* proves: PL-SEQ-11-07, PL-SEQ-11-08, PL-POR-11 */
 static void what_happened_in_sleep_is_seen(void)
 {
@@ -278,6 +337,8 @@ int main(void)
     RUN_TEST(no_balancing_with_a_fault);
     RUN_TEST(outputs_that_do_not_come_on_are_reported);
     RUN_TEST(order_of_sleep_and_wake);
+    RUN_TEST(waits_of_the_wake_up_on_a_fast_bus);
+    RUN_TEST(every_cell_of_the_tallest_stack_by_its_number);
     RUN_TEST(what_happened_in_sleep_is_seen);
     RUN_TEST(the_brick_tells_an_open_end_but_not_too_early);
     RUN_TEST(every_open_wire_is_named);
