@@ -32,7 +32,8 @@ bq_status pl_job_read(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* PL-SEQ-00-02: write, read back under the mask of what the register keeps; a CRC flag is cleared before the next try. */
+/* PL-SEQ-00-02: write, read back under the mask of what the register keeps; a CRC flag is cleared before the
+ * next try. */
 bq_status pl_job_write(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -79,7 +80,8 @@ bq_status pl_job_command(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* PL-SEQ-00-04: the key, directly after it the register, then read back; by broadcast (dev 0x3f) the caller verifies. */
+/* PL-SEQ-00-04: the key, directly after it the register, then read back; by broadcast (dev 0x3f) the caller
+ * verifies. */
 bq_status pl_job_shadow(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -118,9 +120,9 @@ bq_status pl_job_shadow(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* PL-SEQ-00-06: 1, then 0, then look. Only bits in `val` are touched; FORCE (bit 4) always stays 0. A write that did not
- * arrive is repeated: surely when it was flagged or not sent, once when nothing is known. A flag that is still there then
- * has its cause still there. */
+/* PL-SEQ-00-06: 1, then 0, then look. Only bits in `val` are touched; FORCE (bit 4) always stays 0. A write
+ * that did not arrive is repeated: surely when it was flagged or not sent, once when nothing is known. A flag
+ * that is still there then has its cause still there. */
 bq_status pl_job_clear(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)

@@ -60,7 +60,8 @@ static void take_cells(const bq76pl536 *d, unsigned n, bq76pl536_device *dev, co
         clipped |= (uint8_t)(bq76pl536_code_clipped(code) ? 1u << i : 0u);
     }
     uint8_t wires = pl_suspect_wires(d, n, mv);
-    dev->wire_count = wires == 0u ? 0u : (uint8_t)(dev->wire_count < WIRE_CYCLES ? dev->wire_count + 1u : WIRE_CYCLES);
+    dev->wire_count =
+        wires == 0u ? 0u : (uint8_t)(dev->wire_count < WIRE_CYCLES ? dev->wire_count + 1u : WIRE_CYCLES);
     dev->open_wire = 0;
     dev->faults &= (uint16_t)~BQ_F_OPEN_WIRE;
     if (dev->wire_count >= WIRE_CYCLES) {
@@ -87,7 +88,8 @@ static void take_gpai(const bq76pl536 *d, bq76pl536_device *dev, uint16_t code)
     dev->gpai_quality = (uint8_t)(BQ_Q_VALID | (bq76pl536_code_clipped(code) ? BQ_Q_RANGE : 0u));
 }
 
-/* The same results again and again: the conversion start was lost without a trace, or the converter has stopped (06-08). */
+/* The same results again and again: the conversion start was lost without a trace, or the converter has
+ * stopped (06-08). */
 static bool frozen(const bq76pl536 *d, bq76pl536_device *dev, const uint8_t *data)
 {
     if (d->config.frozen_scans == 0u) {
@@ -98,7 +100,8 @@ static bool frozen(const bq76pl536 *d, bq76pl536_device *dev, const uint8_t *dat
         sum = sum * 31u + data[i];
     }
     uint8_t signature = (uint8_t)(sum ^ sum >> 8 ^ sum >> 16);
-    dev->same = signature != dev->signature ? 0u : (uint8_t)(dev->same < UINT8_MAX ? dev->same + 1u : UINT8_MAX);
+    dev->same =
+        signature != dev->signature ? 0u : (uint8_t)(dev->same < UINT8_MAX ? dev->same + 1u : UINT8_MAX);
     dev->signature = signature;
     return dev->same >= d->config.frozen_scans;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the configuration means in registers. Nothing is stored: init has proved that every value has a code. */
+/* What the configuration means in registers. Nothing is stored: init has proved that every value has a code.
+ */
 #include "bqhost/bq76pl536_convert.h"
 #include "pl536_internal.h"
 
@@ -20,7 +21,8 @@ bool pl_uniform(const bq76pl536 *d)
 
 static uint8_t function_config(const bq76pl536 *d, unsigned n)
 {
-    bq76pl536_adct adct = d->config.variant_a ? BQ76PL536_ADCT_3US : BQ76PL536_ADCT_6US; /* code 0: reserved bits */
+    bq76pl536_adct adct =
+        d->config.variant_a ? BQ76PL536_ADCT_3US : BQ76PL536_ADCT_6US; /* code 0: reserved bits */
     uint8_t value = 0;
     (void)bq76pl536_function_config(adct, pl_cells(d, n), !d->gpai_pins, false, &value);
     return value;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Validation of the whole configuration before anything else happens (PL-SEQ-03-01), and the set-up of the instance. */
+/* Validation of the whole configuration before anything else happens (PL-SEQ-03-01), and the set-up of the
+ * instance. */
 #include "bqhost/bq76pl536_convert.h"
 #include "pl536_internal.h"
 #include <string.h>

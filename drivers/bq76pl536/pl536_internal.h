@@ -2,12 +2,13 @@
 /*
  * Inside of the bq76PL536 driver.
  *
- * Everything the driver does on the bus is a job. A job is a function that is called again and again; SEQ_... macros
- * remember in its frame where it goes on, so that it reads from top to bottom like the procedure it carries out. A job
- * lets go of the processor at three kinds of points: a packet was started (SEQ_SEND), a time must pass (SEQ_WAIT), or a
- * child job runs (SEQ_CALL). Local variables do not survive these points; what must survive lives in the frame. The
- * frames form a fixed stack in the instance; pl_step() calls the job of the top frame directly, so there is neither
- * recursion nor a stored function pointer, and a job never runs inside another one.
+ * Everything the driver does on the bus is a job. A job is a function that is called again and again; SEQ_...
+ * macros remember in its frame where it goes on, so that it reads from top to bottom like the procedure it
+ * carries out. A job lets go of the processor at three kinds of points: a packet was started (SEQ_SEND), a
+ * time must pass (SEQ_WAIT), or a child job runs (SEQ_CALL). Local variables do not survive these points;
+ * what must survive lives in the frame. The frames form a fixed stack in the instance; pl_step() calls the
+ * job of the top frame directly, so there is neither recursion nor a stored function pointer, and a job never
+ * runs inside another one.
  */
 #ifndef PL536_INTERNAL_H
 #define PL536_INTERNAL_H
@@ -34,16 +35,17 @@ enum { PL_STATE_NONE, PL_STATE_READY, PL_STATE_ASLEEP };
 #define PL_EVENTS (BQ_F_RESET | BQ_F_CONFIG | BQ_F_LOCKUP | BQ_F_BALANCE)
 
 #define PL_TRIES 3u
-#define PL_RESET_US 1000u         /* PL-POR-09 */
-#define PL_POWER_UP_MS 70u        /* PL-SEQ-01-02 */
+#define PL_RESET_US 1000u           /* PL-POR-09 */
+#define PL_POWER_UP_MS 70u          /* PL-SEQ-01-02 */
 #define PL_FIRST_CONVERSION_MS 120u /* PL-SEQ-01-05 */
-#define PL_WARM_UP_MS 50u         /* PL-ADC-19 */
-#define PL_ADC_ON_US 1100u        /* PL-TIM-16: more than 1 ms */
-#define PL_WAKE_US 1000u          /* PL-SEQ-11-05 */
-#define PL_PROBE_MS 70u           /* PL-SEQ-13-03: a reset time between two looks at a lost device */
-#define PL_TSD_MS 1000u           /* PL-SEQ-15-03 */
-#define PL_POWER_OFF_US 200000u   /* supply off when the board can cycle it */
+#define PL_WARM_UP_MS 50u           /* PL-ADC-19 */
+#define PL_ADC_ON_US 1100u          /* PL-TIM-16: more than 1 ms */
+#define PL_WAKE_US 1000u            /* PL-SEQ-11-05 */
+#define PL_PROBE_MS 70u             /* PL-SEQ-13-03: a reset time between two looks at a lost device */
+#define PL_TSD_MS 1000u             /* PL-SEQ-15-03 */
+#define PL_POWER_OFF_US 200000u     /* supply off when the board can cycle it */
 
+/* clang-format off */
 /* Every job: PL_JOB_<NAME> is its number, pl_job_<name>() its function. */
 #define PL_JOBS(JOB) \
     JOB(READ, read) JOB(WRITE, write) JOB(COMMAND, command) JOB(SHADOW, shadow) JOB(CLEAR, clear) \
@@ -56,7 +58,8 @@ enum { PL_STATE_NONE, PL_STATE_READY, PL_STATE_ASLEEP };
     JOB(RELOCATE, relocate) JOB(ADOPT, adopt) JOB(SELF_TEST, self_test) JOB(CHAIN, chain) \
     JOB(APPLY, apply) JOB(CB_ON, cb_on) JOB(CB_OFF, cb_off) JOB(CB_PAUSE, cb_pause) JOB(SLEEP, sleep) \
     JOB(WAKE, wake) JOB(WIRE_TEST, wire_test) JOB(WIRE_CELL, wire_cell) JOB(RECONFIGURE, reconfigure) \
-    JOB(OTP, otp) JOB(OTP_BURN, otp_burn) JOB(FRAMING, framing) JOB(ARRIVAL, arrival)
+    JOB(OTP, otp) JOB(OTP_BURN, otp_burn) \
+    JOB(FRAMING, framing) JOB(ARRIVAL, arrival)
 
 enum pl_job {
 #define JOB(NAME, name) PL_JOB_##NAME,
@@ -64,25 +67,47 @@ enum pl_job {
 #undef JOB
     PL_JOB_COUNT
 };
+/* clang-format on */
 
 #define JOB(NAME, name) bq_status pl_job_##name(bq76pl536 *d, bq76pl536_frame *f);
 PL_JOBS(JOB)
 #undef JOB
 
-#define SEQ_BEGIN(f) switch ((f)->pc) { case 0:
-#define SEQ_END } return BQ_E_STATE
+#define SEQ_BEGIN(f)                                                                                         \
+    switch ((f)->pc) {                                                                                       \
+    case 0:
+#define SEQ_END                                                                                              \
+    }                                                                                                        \
+    return BQ_E_STATE
 /* Starts a packet; afterwards d->transfer tells how it ended. */
-#define SEQ_SEND(f, start) \
-    do { (f)->pc = (uint16_t)__LINE__; return (start); case __LINE__:; } while (0)
+#define SEQ_SEND(f, start)                                                                                   \
+    do {                                                                                                     \
+        (f)->pc = (uint16_t)__LINE__;                                                                        \
+        return (start);                                                                                      \
+    case __LINE__:;                                                                                          \
+    } while (0)
 /* Lets `us` microseconds pass. */
-#define SEQ_WAIT(d, f, us) \
-    do { (f)->pc = (uint16_t)__LINE__; return pl_wait((d), (us)); case __LINE__:; } while (0)
+#define SEQ_WAIT(d, f, us)                                                                                   \
+    do {                                                                                                     \
+        (f)->pc = (uint16_t)__LINE__;                                                                        \
+        return pl_wait((d), (us));                                                                           \
+    case __LINE__:;                                                                                          \
+    } while (0)
 /* Runs a child; afterwards d->result is its status and, after a read, pl_data(d) what was read. */
-#define SEQ_CALL(d, f, job, dev, reg, val) \
-    do { (f)->pc = (uint16_t)__LINE__; return pl_push((d), (job), (dev), (reg), (val)); case __LINE__:; } while (0)
+#define SEQ_CALL(d, f, job, dev, reg, val)                                                                   \
+    do {                                                                                                     \
+        (f)->pc = (uint16_t)__LINE__;                                                                        \
+        return pl_push((d), (job), (dev), (reg), (val));                                                     \
+    case __LINE__:;                                                                                          \
+    } while (0)
 /* The same; the job ends with the status of a child that failed. */
-#define SEQ_TRY(d, f, job, dev, reg, val) \
-    do { SEQ_CALL(d, f, job, dev, reg, val); if ((d)->result != BQ_OK) { return (d)->result; } } while (0)
+#define SEQ_TRY(d, f, job, dev, reg, val)                                                                    \
+    do {                                                                                                     \
+        SEQ_CALL(d, f, job, dev, reg, val);                                                                  \
+        if ((d)->result != BQ_OK) {                                                                          \
+            return (d)->result;                                                                              \
+        }                                                                                                    \
+    } while (0)
 
 /* ---- engine: seq.c ---- */
 bq_status pl_push(bq76pl536 *d, uint8_t job, unsigned dev, unsigned reg, unsigned val);
@@ -114,19 +139,21 @@ uint8_t pl_io_control(const bq76pl536 *d);
 bool pl_uniform(const bq76pl536 *d);           /* every device has the same number of cells */
 uint32_t pl_conversion_us(const bq76pl536 *d); /* worst case of the largest device */
 uint32_t pl_longest_delay_us(const bq76pl536 *d);
-uint32_t pl_settle_us(const bq76pl536 *d);     /* thermistors */
+uint32_t pl_settle_us(const bq76pl536 *d); /* thermistors */
 
 /* ---- lines: seq.c ---- */
 bool pl_line(const bq76pl536 *d, bq_line line, bool *level); /* false: the board does not have it */
 void pl_drive(const bq76pl536 *d, bq_line line, bool level);
 
 /* ---- readings: burst.c ---- */
-/* Judges and takes over a burst of device n from a conversion at `t_ms`; a status other than BQ_OK left everything alone.
- * BQ_E_LOCKED_UP: the conversion has not ended. BQ_OK does not mean that the readings count: PL_DEV_VALID says so. */
+/* Judges and takes over a burst of device n from a conversion at `t_ms`; a status other than BQ_OK left
+ * everything alone. BQ_E_LOCKED_UP: the conversion has not ended. BQ_OK does not mean that the readings
+ * count: PL_DEV_VALID says so. */
 bq_status pl_take_burst(bq76pl536 *d, unsigned n, uint32_t t_ms);
 void pl_invalidate(bq76pl536_device *dev, uint8_t why, uint16_t fault);
 void pl_invalidate_from(bq76pl536 *d, unsigned first, uint8_t why, uint16_t fault);
-/* Brick against sum and neighbours against their last good values; returns the sense wires that look open. wires.c */
+/* Brick against sum and neighbours against their last good values; returns the sense wires that look open.
+ * wires.c */
 uint8_t pl_suspect_wires(const bq76pl536 *d, unsigned n, const uint16_t *mv);
 bool pl_valid(const bq76pl536 *d, unsigned n);
 bool pl_may_balance(const bq76pl536 *d, unsigned n);

@@ -35,7 +35,8 @@ bq_status bq76pl536_sample(bq76pl536 *d, bq_sample *s)
         return BQ_E_ARG;
     }
     uint16_t temps = (uint16_t)(d->config.devices * d->config.sensors);
-    if (s->cell_capacity < all_cells(d) || s->temp_capacity < temps || s->module_capacity < d->config.devices) {
+    if (s->cell_capacity < all_cells(d) || s->temp_capacity < temps ||
+        s->module_capacity < d->config.devices) {
         return BQ_E_ARG;
     }
     if (d->sequence == 0u) {

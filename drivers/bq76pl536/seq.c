@@ -41,7 +41,8 @@ bool pl_line(const bq76pl536 *d, bq_line line, bool *level)
 void pl_drive(const bq76pl536 *d, bq_line line, bool level)
 {
     if (d->gpio.ops != NULL) {
-        (void)d->gpio.ops->write(d->gpio.ctx, line, level); /* a line the board does not have needs no driving */
+        (void)d->gpio.ops->write(d->gpio.ctx, line,
+                                 level); /* a line the board does not have needs no driving */
     }
 }
 
@@ -76,7 +77,8 @@ bq_status pl_send_read(bq76pl536 *d, unsigned dev, unsigned reg, unsigned count)
     d->data = BQ76PL536_READ_HEADER;
     if (d->crc && (reg != BQ76PL536_BURST_FIRST || count != BQ76PL536_BURST_COUNT) &&
         bq76pl536_packet_ambiguous((uint8_t)dev, (uint8_t)reg, (uint8_t)count)) {
-        if (reg + count <= BQ76PL536_REG_LAST) { /* one register more: a dead bus cannot pass then (PL-CRC-12) */
+        if (reg + count <=
+            BQ76PL536_REG_LAST) { /* one register more: a dead bus cannot pass then (PL-CRC-12) */
             count++;
         } else {
             reg--;
@@ -84,14 +86,16 @@ bq_status pl_send_read(bq76pl536 *d, unsigned dev, unsigned reg, unsigned count)
             d->data++;
         }
     }
-    d->transfer = bq76pl536_packet_read(d->tx, sizeof d->tx, (uint8_t)dev, (uint8_t)reg, (uint8_t)count, d->crc, &length);
+    d->transfer = bq76pl536_packet_read(d->tx, sizeof d->tx, (uint8_t)dev, (uint8_t)reg, (uint8_t)count,
+                                        d->crc, &length);
     return d->transfer == BQ_OK ? pl_send_raw(d, length) : BQ_PENDING;
 }
 
 bq_status pl_send_write(bq76pl536 *d, unsigned dev, unsigned reg, unsigned val)
 {
     size_t length = 0;
-    d->transfer = bq76pl536_packet_write(d->tx, sizeof d->tx, (uint8_t)dev, (uint8_t)reg, (uint8_t)val, d->crc, &length);
+    d->transfer = bq76pl536_packet_write(d->tx, sizeof d->tx, (uint8_t)dev, (uint8_t)reg, (uint8_t)val,
+                                         d->crc, &length);
     return d->transfer == BQ_OK ? pl_send_raw(d, length) : BQ_PENDING;
 }
 
@@ -160,8 +164,8 @@ bq_status pl_begin(bq76pl536 *d, uint8_t job, unsigned dev)
 static bq_status dispatch(bq76pl536 *d, bq76pl536_frame *f)
 {
     switch (f->job) {
-#define JOB(NAME, name)                                                                                                \
-    case PL_JOB_##NAME:                                                                                                \
+#define JOB(NAME, name)                                                                                      \
+    case PL_JOB_##NAME:                                                                                      \
         return pl_job_##name(d, f);
         PL_JOBS(JOB)
 #undef JOB

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Balancing with measurement pauses: PL-SEQ-10. Outputs are off whenever a scan measures; only apply switches them on. */
+/* Balancing with measurement pauses: PL-SEQ-10. Outputs are off whenever a scan measures; only apply switches
+ * them on. */
 #include "pl536_internal.h"
 
 bool pl_may_balance(const bq76pl536 *d, unsigned n)
 {
     const bq76pl536_device *dev = &d->devices[n - 1u];
-    const uint16_t against = BQ_F_DIE_TEMP | BQ_F_SUPPLY | BQ_F_MEMORY | BQ_F_DEFECTIVE | BQ_F_COMM | BQ_F_OPEN_WIRE |
-                             BQ_F_LOCKUP;
+    const uint16_t against =
+        BQ_F_DIE_TEMP | BQ_F_SUPPLY | BQ_F_MEMORY | BQ_F_DEFECTIVE | BQ_F_COMM | BQ_F_OPEN_WIRE | BQ_F_LOCKUP;
     return n <= d->found && pl_valid(d, n) && (dev->faults & against) == 0u && dev->fault == 0u;
 }
 
@@ -16,7 +17,8 @@ static bool timer_runs(const bq76pl536 *d)
     return d->now_ms - d->cb_ms < d->config.balance_timer_s * 880ul;
 }
 
-/* Off for a measurement: one broadcast and the settling time; that it arrived shows in the CBT bits of the bursts (10-04). */
+/* Off for a measurement: one broadcast and the settling time; that it arrived shows in the CBT bits of the
+ * bursts (10-04). */
 bq_status pl_job_cb_pause(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -36,7 +38,8 @@ bq_status pl_job_cb_pause(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Off for good, verified in every device (10-08). The status is that of the first device that could not be verified. */
+/* Off for good, verified in every device (10-08). The status is that of the first device that could not be
+ * verified. */
 bq_status pl_job_cb_off(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -58,7 +61,8 @@ bq_status pl_job_cb_off(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Outputs `val` of device `dev` on (10-02, 10-03): timer while they are off, 0, mask, then prove mask, period and CBT. */
+/* Outputs `val` of device `dev` on (10-02, 10-03): timer while they are off, 0, mask, then prove mask, period
+ * and CBT. */
 bq_status pl_job_cb_on(bq76pl536 *d, bq76pl536_frame *f)
 {
     bq76pl536_device *dev = pl_dev(d, f->dev);
@@ -106,7 +110,8 @@ static bool wanted(bq76pl536 *d, unsigned n)
     return dev->cb_want != 0u && pl_may_balance(d, n);
 }
 
-/* The flags an application has acted on: the comparators' only (08-06), never faster than they could return. */
+/* The flags an application has acted on: the comparators' only (08-06), never faster than they could return.
+ */
 static bool clear_due(bq76pl536 *d)
 {
     if (!d->clear_faults || d->now_ms - d->clear_ms < pl_longest_delay_us(d) / 1000u) {

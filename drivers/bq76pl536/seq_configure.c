@@ -6,12 +6,12 @@
 #define LOWER 2u /* some device has a higher one */
 #define STEPS 11u
 
-/* Thresholds before delays, COV and CUV in the order that keeps them 300 mV apart, OT delay before OT (03-04 .. 03-07).
- * IO_CONFIG is not here: the framing changes last of all. */
+/* Thresholds before delays, COV and CUV in the order that keeps them 300 mV apart, OT delay before OT (03-04
+ * .. 03-07). IO_CONFIG is not here: the framing changes last of all. */
 static uint8_t order(unsigned step, bool cov_first)
 {
     static const uint8_t regs[STEPS] = {
-        BQ76PL536_FUNCTION_CONFIG, BQ76PL536_CONFIG_COV,  BQ76PL536_CONFIG_CUV, BQ76PL536_CONFIG_OTT,
+        BQ76PL536_FUNCTION_CONFIG, BQ76PL536_CONFIG_COV,  BQ76PL536_CONFIG_CUV,  BQ76PL536_CONFIG_OTT,
         BQ76PL536_CONFIG_OT,       BQ76PL536_CONFIG_COVT, BQ76PL536_CONFIG_CUVT, BQ76PL536_USER1,
         BQ76PL536_USER1 + 1u,      BQ76PL536_USER1 + 2u,  BQ76PL536_USER4};
     if (!cov_first && (step == 1u || step == 2u)) {
@@ -51,8 +51,8 @@ static uint16_t differences(const bq76pl536 *d, unsigned n, const uint8_t *data)
     return (uint16_t)diff;
 }
 
-/* What all devices have in common goes out by broadcast; `val` = RAISE and LOWER of the stack. Verified is only
- * what the next step needs: ADC_ON, CN of unequal devices, the first threshold. */
+/* What all devices have in common goes out by broadcast; `val` = RAISE and LOWER of the stack. Verified is
+ * only what the next step needs: ADC_ON, CN of unequal devices, the first threshold. */
 bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -63,7 +63,8 @@ bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_IO_CONTROL, pl_io_control(d)));
     if (!pl_uniform(d)) { /* CN must be right before CUV is armed (PL-CUV-08) */
         for (f->n = 1; f->n <= d->found; f->n++) {
-            SEQ_TRY(d, f, PL_JOB_SHADOW, f->n, BQ76PL536_FUNCTION_CONFIG, pl_image(d, f->n, BQ76PL536_FUNCTION_CONFIG));
+            SEQ_TRY(d, f, PL_JOB_SHADOW, f->n, BQ76PL536_FUNCTION_CONFIG,
+                    pl_image(d, f->n, BQ76PL536_FUNCTION_CONFIG));
         }
     }
     f->val = (uint8_t)(f->val ^ (RAISE | LOWER));
@@ -73,7 +74,8 @@ bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
             continue;
         }
         SEQ_CALL(d, f, PL_JOB_SHADOW, BQ76PL536_ADDR_BROADCAST, f->reg, pl_image(d, 1, f->reg));
-        for (f->n = 1; f->i == 1u && f->n <= d->found; f->n++) { /* the first threshold, before the second leans on it */
+        for (f->n = 1; f->i == 1u && f->n <= d->found;
+             f->n++) { /* the first threshold, before the second leans on it */
             SEQ_TRY(d, f, PL_JOB_READ, f->n, f->reg, 1);
             if (pl_data(d)[0] != pl_image(d, f->n, f->reg)) {
                 SEQ_TRY(d, f, PL_JOB_SHADOW, f->n, f->reg, pl_image(d, f->n, f->reg));
@@ -85,8 +87,9 @@ bq_status pl_job_broadcast(bq76pl536 *d, bq76pl536_frame *f)
 }
 
 /*
- * Brings device `dev` to the configured state, whatever it holds, and proves it: reads everything, writes only what differs.
- * Also the scrub and the answer to a reset. `val` = 1: a difference is a finding (BQ_F_CONFIG).
+ * Brings device `dev` to the configured state, whatever it holds, and proves it: reads everything, writes
+ * only what differs. Also the scrub and the answer to a reset. `val` = 1: a difference is a finding
+ * (BQ_F_CONFIG).
  */
 bq_status pl_job_establish(bq76pl536 *d, bq76pl536_frame *f)
 {
@@ -135,7 +138,8 @@ bq_status pl_job_establish(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Clears what a reset, a wake-up or a new threshold left behind in device `dev`. What speaks of memory or heat stays for service. */
+/* Clears what a reset, a wake-up or a new threshold left behind in device `dev`. What speaks of memory or
+ * heat stays for service. */
 bq_status pl_job_acknowledge(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -158,7 +162,8 @@ bq_status pl_job_acknowledge(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Runs device `dev` (0x3f: all) without CRC from now on. A device that did not follow still speaks with CRC (PL-AMB-16). */
+/* Runs device `dev` (0x3f: all) without CRC from now on. A device that did not follow still speaks with CRC
+ * (PL-AMB-16). */
 bq_status pl_job_framing(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -185,7 +190,8 @@ bq_status pl_job_framing(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* FAULT and ALERT must be low when no device has a reason to hold them high (03-11). Looks at every device and notes its flags. */
+/* FAULT and ALERT must be low when no device has a reason to hold them high (03-11). Looks at every device
+ * and notes its flags. */
 bq_status pl_job_lines(bq76pl536 *d, bq76pl536_frame *f)
 {
     bool high;
@@ -194,7 +200,8 @@ bq_status pl_job_lines(bq76pl536 *d, bq76pl536_frame *f)
         SEQ_TRY(d, f, PL_JOB_READ, f->n, BQ76PL536_ALERT_STATUS, 2);
         pl_dev(d, f->n)->alert = pl_data(d)[0];
         pl_dev(d, f->n)->fault = pl_data(d)[1];
-        SEQ_TRY(d, f, PL_JOB_READ, f->n, BQ76PL536_DEVICE_STATUS, 1); /* ALERT may stand for ECC_COR alone (PL-AMB-48) */
+        SEQ_TRY(d, f, PL_JOB_READ, f->n, BQ76PL536_DEVICE_STATUS,
+                1); /* ALERT may stand for ECC_COR alone (PL-AMB-48) */
         f->x |= (pl_data(d)[0] & BQ76PL536_DS_ALERT) != 0u ? 1u : 0u;
         f->x |= (pl_data(d)[0] & BQ76PL536_DS_FAULT) != 0u ? 2u : 0u;
     }

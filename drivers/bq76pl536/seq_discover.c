@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Address discovery and assignment: PL-SEQ-02, Figure 12 with retries, and the search for the largest stack that works. */
+/* Address discovery and assignment: PL-SEQ-02, Figure 12 with retries, and the search for the largest stack
+ * that works. */
 #include "pl536_internal.h"
 
 static void set_clock(bq76pl536 *d, uint32_t hz)
@@ -10,7 +11,8 @@ static void set_clock(bq76pl536 *d, uint32_t hz)
     }
 }
 
-/* One assignment, `dev` = n. Only the read-back is repeated: a second assignment would go to the next device (02-05). */
+/* One assignment, `dev` = n. Only the read-back is repeated: a second assignment would go to the next device
+ * (02-05). */
 bq_status pl_job_assign(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -35,7 +37,8 @@ bq_status pl_job_validate(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Right after a reset every device asserts ALERT; a low line means that the chain is suspect (PL-SEQ-01-03). */
+/* Right after a reset every device asserts ALERT; a low line means that the chain is suspect (PL-SEQ-01-03).
+ */
 static void watch_alert(bq76pl536 *d)
 {
     bool high;
@@ -44,7 +47,8 @@ static void watch_alert(bq76pl536 *d)
     }
 }
 
-/* The growing loop for a stack of `dev` devices: each pass resets one device more than the one before (PL-ADR-11). */
+/* The growing loop for a stack of `dev` devices: each pass resets one device more than the one before
+ * (PL-ADR-11). */
 bq_status pl_job_height(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -55,7 +59,8 @@ bq_status pl_job_height(bq76pl536 *d, bq76pl536_frame *f)
             d->crc = true;
             SEQ_WAIT(d, f, PL_RESET_US);
         }
-        for (f->tries = 0; f->tries < PL_TRIES; f->tries++) { /* unsent, the first assignment would go to the next device */
+        for (f->tries = 0; f->tries < PL_TRIES;
+             f->tries++) { /* unsent, the first assignment would go to the next device */
             SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_RESET, BQ76PL536_RESET_CODE));
             if (d->transfer == BQ_OK) {
                 break;
@@ -124,9 +129,10 @@ static bool somebody_at_zero(bq76pl536 *d)
 }
 
 /*
- * The whole of PL-SEQ-02. Three attempts (the second assigns bare numbers, the third at half the clock). When they fail,
- * the largest height that works is sought: first just below the break, then by halving, because a device with a wiring
- * fault can disturb those below it. f->n = lowest height known not to work, f->i = highest known to work, f->x = tried.
+ * The whole of PL-SEQ-02. Three attempts (the second assigns bare numbers, the third at half the clock). When
+ * they fail, the largest height that works is sought: first just below the break, then by halving, because a
+ * device with a wiring fault can disturb those below it. f->n = lowest height known not to work, f->i =
+ * highest known to work, f->x = tried.
  */
 bq_status pl_job_discover(bq76pl536 *d, bq76pl536_frame *f)
 {
@@ -186,8 +192,9 @@ bq_status pl_job_discover(bq76pl536 *d, bq76pl536_frame *f)
         }
     }
     SEQ_TRY(d, f, PL_JOB_ARRIVAL, 0, 0, 0);
-    return d->found == d->config.devices || d->config.allow_partial || d->state == PL_STATE_READY ? BQ_OK
-                                                                                                   : BQ_E_NOT_FOUND;
+    return d->found == d->config.devices || d->config.allow_partial || d->state == PL_STATE_READY
+               ? BQ_OK
+               : BQ_E_NOT_FOUND;
     SEQ_END;
 }
 
@@ -248,7 +255,8 @@ bq_status pl_job_start(bq76pl536 *d, bq76pl536_frame *f)
     if (d->now_ms - d->power_ms < PL_FIRST_CONVERSION_MS) {
         SEQ_WAIT(d, f, (PL_FIRST_CONVERSION_MS - (d->now_ms - d->power_ms)) * 1000u);
     }
-    SEQ_CALL(d, f, PL_JOB_SELF_TEST, 0, 0, 0); /* what it finds is reported; measuring is possible all the same */
+    SEQ_CALL(d, f, PL_JOB_SELF_TEST, 0, 0,
+             0); /* what it finds is reported; measuring is possible all the same */
     d->state = PL_STATE_READY;
     d->scrub_next = 1;
     d->scrub_ms = d->now_ms;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * EPROM programming: PL-SEQ-12. Irreversible, once per part. Compiled only with BQHOST_OTP; without it the call is refused and
- * no byte of the procedure is in the image.
+ * EPROM programming: PL-SEQ-12. Irreversible, once per part. Compiled only with BQHOST_OTP; without it the
+ * call is refused and no byte of the procedure is in the image.
  */
 #include "bqhost/bq76pl536_convert.h"
 #include "pl536_internal.h"
@@ -85,7 +85,8 @@ bq_status bq76pl536_program_otp(bq76pl536 *d, uint8_t device, const uint8_t *ima
     return pl_begin(d, PL_JOB_OTP, device);
 }
 
-/* 12-04 .. 12-06 and the refresh of 12-07. Between the command and the end nothing else is sent; 7 V goes on every path. */
+/* 12-04 .. 12-06 and the refresh of 12-07. Between the command and the end nothing else is sent; 7 V goes on
+ * every path. */
 bq_status pl_job_otp_burn(bq76pl536 *d, bq76pl536_frame *f)
 {
     size_t length = 0;
@@ -99,7 +100,8 @@ bq_status pl_job_otp_burn(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_SEND(f, pl_send_raw(d, length));
     SEQ_WAIT(d, f, BURN_US);
     pl_drive(d, BQ_LINE_VPP, false);
-    SEQ_CALL(d, f, PL_JOB_COMMAND, f->dev, BQ76PL536_SHDW_CTRL, BQ76PL536_SHDW_REFRESH); /* clears a CRC flag */
+    SEQ_CALL(d, f, PL_JOB_COMMAND, f->dev, BQ76PL536_SHDW_CTRL,
+             BQ76PL536_SHDW_REFRESH); /* clears a CRC flag */
     SEQ_TRY(d, f, PL_JOB_READ, f->dev, BQ76PL536_GROUP3_FIRST, BQ76PL536_GROUP3_COUNT);
     if (is(d, d->image)) {
         return BQ_OK;

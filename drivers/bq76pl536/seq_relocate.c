@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A device lost in the middle of the stack: PL-SEQ-13, and the unicast reset that ends the same way (PL-SEQ-05-02). */
+/* A device lost in the middle of the stack: PL-SEQ-13, and the unicast reset that ends the same way
+ * (PL-SEQ-05-02). */
 #include "pl536_internal.h"
 
 /* Device `dev` answers at its address; makes it a working member again. `val` = 1: it was just addressed. */
@@ -25,7 +26,8 @@ bq_status pl_job_adopt(bq76pl536 *d, bq76pl536_frame *f)
     if (f->val != 0u) {
         SEQ_TRY(d, f, PL_JOB_ACKNOWLEDGE, f->dev, 0, 0);
         dev->flags |= PL_DEV_WARMING;
-        dev->ready_ms = d->now_ms + (pl_settle_us(d) > PL_WARM_UP_MS * 1000u ? pl_settle_us(d) / 1000u : PL_WARM_UP_MS);
+        dev->ready_ms =
+            d->now_ms + (pl_settle_us(d) > PL_WARM_UP_MS * 1000u ? pl_settle_us(d) / 1000u : PL_WARM_UP_MS);
     }
     if (f->dev > d->found) {
         d->found = f->dev;
@@ -49,8 +51,9 @@ static void end_stack(bq76pl536 *d, unsigned n)
 }
 
 /*
- * From device `dev` upward: whoever answers at its address is checked, whoever answers at 0x00 is addressed and configured;
- * where nobody answers the stack ends for now, and the next scans look again. All below stay in use all the time.
+ * From device `dev` upward: whoever answers at its address is checked, whoever answers at 0x00 is addressed
+ * and configured; where nobody answers the stack ends for now, and the next scans look again. All below stay
+ * in use all the time.
  */
 bq_status pl_job_relocate(bq76pl536 *d, bq76pl536_frame *f)
 {
@@ -87,7 +90,8 @@ bq_status pl_job_relocate(bq76pl536 *d, bq76pl536_frame *f)
     }
     d->diagnosis.broken_hop = 0;
     SEQ_SEND(f, pl_send_read(d, BQ76PL536_ADDR_NONE, BQ76PL536_DEVICE_STATUS, 1)); /* 13-07 */
-    if (d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) == BQ_OK && pl_data(d)[0] != 0u) {
+    if (d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) == BQ_OK &&
+        pl_data(d)[0] != 0u) {
         SEQ_TRY(d, f, PL_JOB_BRINGUP, 0, 0, 0);
     }
     return BQ_OK;

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Measurement: PL-SEQ-06 and PL-SEQ-07. When nothing is wrong a scan is one broadcast and one burst per device. */
+/* Measurement: PL-SEQ-06 and PL-SEQ-07. When nothing is wrong a scan is one broadcast and one burst per
+ * device. */
 #include "pl536_internal.h"
 
 static bool raise_conv(const bq76pl536 *d)
 {
-    return d->config.use_conv_pin && d->gpio.ops != NULL && d->gpio.ops->write(d->gpio.ctx, BQ_LINE_CONV, true) == BQ_OK;
+    return d->config.use_conv_pin && d->gpio.ops != NULL &&
+           d->gpio.ops->write(d->gpio.ctx, BQ_LINE_CONV, true) == BQ_OK;
 }
 
 /* Only a hint (PL-AMB-79): a line that is missing or high says nothing. */
@@ -22,20 +24,22 @@ bq_status pl_job_convert(bq76pl536 *d, bq76pl536_frame *f)
     d->start_us = d->now_us;
     if (raise_conv(d)) {
         SEQ_WAIT(d, f, pl_conversion_us(d));
-        if (drdy_low(d)) {
-            SEQ_WAIT(d, f, pl_conversion_us(d)); /* time-out at twice the computed time; the bursts tell who hangs */
+        if (drdy_low(d)) { /* time-out at twice the computed time; the bursts tell who hangs */
+            SEQ_WAIT(d, f, pl_conversion_us(d));
         }
         pl_drive(d, BQ_LINE_CONV, false);
         return BQ_OK;
     }
     for (;;) {
-        SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_ADC_CONVERT, BQ76PL536_CONVERT_START));
+        SEQ_SEND(f,
+                 pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_ADC_CONVERT, BQ76PL536_CONVERT_START));
         if (d->transfer == BQ_OK) {
             break;
         }
         if (++f->tries >= PL_TRIES) {
             return d->transfer;
         }
+        SEQ_WAIT(d, f, pl_conversion_us(d)); /* it may have arrived all the same (PL-SEQ-00-03) */
     }
     SEQ_WAIT(d, f, pl_conversion_us(d));
     return BQ_OK;
@@ -52,9 +56,9 @@ static void give_up(bq76pl536 *d, unsigned n, bq_status st)
     }
 }
 
-/* Reads every device. f->x = a device that does not answer at all, 0 = none: those above it get one try each until one of
- * them answers, because a device without an address hides them all. The lowest one that stayed silent is left in f->dev
- * and reported through d->failed_at. */
+/* Reads every device. f->x = a device that does not answer at all, 0 = none: those above it get one try each
+ * until one of them answers, because a device without an address hides them all. The lowest one that stayed
+ * silent is left in f->dev and reported through d->failed_at. */
 bq_status pl_job_read_in(bq76pl536 *d, bq76pl536_frame *f)
 {
     bq_status st;
@@ -111,7 +115,8 @@ bq_status pl_job_remeasure(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* Before a CONV edge, which would lock up a programmed device that was reset unnoticed (07-05): look at all when a line is high. */
+/* Before a CONV edge, which would lock up a programmed device that was reset unnoticed (07-05): look at all
+ * when a line is high. */
 bq_status pl_job_sweep(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
@@ -121,7 +126,8 @@ bq_status pl_job_sweep(bq76pl536 *d, bq76pl536_frame *f)
             SEQ_TRY(d, f, PL_JOB_RELOCATE, f->n, 0, 0);
             return BQ_OK;
         }
-        if (d->result == BQ_OK && ((pl_data(d)[1] & BQ76PL536_FAULT_POR) != 0u || (pl_data(d)[0] & BQ76PL536_ALERT_AR) != 0u)) {
+        if (d->result == BQ_OK &&
+            ((pl_data(d)[1] & BQ76PL536_FAULT_POR) != 0u || (pl_data(d)[0] & BQ76PL536_ALERT_AR) != 0u)) {
             SEQ_TRY(d, f, PL_JOB_SERVICE, f->n, 0, 0);
         }
     }
@@ -148,7 +154,8 @@ static unsigned count_locked(const bq76pl536 *d)
     return count;
 }
 
-/* What the bursts asked for: service, lock-up recovery, lost devices, the scrub. f->x = 1: hot devices may be tried again. */
+/* What the bursts asked for: service, lock-up recovery, lost devices, the scrub. f->x = 1: hot devices may be
+ * tried again. */
 bq_status pl_job_aftercare(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)

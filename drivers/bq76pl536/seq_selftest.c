@@ -32,15 +32,17 @@ static void report_stuck(bq76pl536 *d, unsigned reg)
 }
 
 /*
- * The chain of status register `reg`: FORCE in the top device must reach the host, and only from there. If it does not, lower
- * devices are forced until one is heard: the break is above it. f->n = device forced, f->x = lowest that was not heard.
+ * The chain of status register `reg`: FORCE in the top device must reach the host, and only from there. If it
+ * does not, lower devices are forced until one is heard: the break is above it. f->n = device forced, f->x =
+ * lowest that was not heard.
  */
 bq_status pl_job_chain(bq76pl536 *d, bq76pl536_frame *f)
 {
     bool high = false;
     SEQ_BEGIN(f)
     report_break(d, f->reg, 0);
-    if (!pl_line(d, line_of(f->reg), &high) || high) { /* no line, or proven up to its present source only (09-01) */
+    if (!pl_line(d, line_of(f->reg), &high) ||
+        high) { /* no line, or proven up to its present source only (09-01) */
         d->diagnosis.chain_skipped = true;
         return BQ_OK;
     }
@@ -50,7 +52,8 @@ bq_status pl_job_chain(bq76pl536 *d, bq76pl536_frame *f)
         if (f->n == d->found && f->i != 0u) {
             for (f->tries = 1; f->tries < f->n; f->tries++) { /* 09-03 */
                 SEQ_TRY(d, f, PL_JOB_READ, f->tries, BQ76PL536_DEVICE_STATUS, 1);
-                if ((pl_data(d)[0] & (f->reg == BQ76PL536_FAULT_STATUS ? BQ76PL536_DS_FAULT : BQ76PL536_DS_ALERT)) != 0u) {
+                if ((pl_data(d)[0] &
+                     (f->reg == BQ76PL536_FAULT_STATUS ? BQ76PL536_DS_FAULT : BQ76PL536_DS_ALERT)) != 0u) {
                     d->diagnosis.chain_skipped = true; /* it came from below: nothing is proven */
                 }
             }

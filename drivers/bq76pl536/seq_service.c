@@ -16,7 +16,8 @@ static bool memory_doubt(const bq76pl536_device *dev)
            (dev->alert & (BQ76PL536_ALERT_ECC_ERR | BQ76PL536_ALERT_PARITY)) != 0u;
 }
 
-/* Order of 08-03: CRC, memory, heat, reset, comparators, SLEEP, FORCE. `val` = 1: a hot device may be tried again. */
+/* Order of 08-03: CRC, memory, heat, reset, comparators, SLEEP, FORCE. `val` = 1: a hot device may be tried
+ * again. */
 bq_status pl_job_service(bq76pl536 *d, bq76pl536_frame *f)
 {
     bq76pl536_device *dev = pl_dev(d, f->dev);

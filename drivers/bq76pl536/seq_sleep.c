@@ -8,10 +8,12 @@ bq_status pl_job_sleep(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_BEGIN(f)
     SEQ_TRY(d, f, PL_JOB_CB_OFF, 0, 0, 0); /* 11-01 */
     d->reading = true;
-    SEQ_CALL(d, f, PL_JOB_READ_IN, 0, 0, 0); /* the last results, so that DRDY costs no current (PL-DRDY-05) */
+    SEQ_CALL(d, f, PL_JOB_READ_IN, 0, 0,
+             0); /* the last results, so that DRDY costs no current (PL-DRDY-05) */
     d->reading = false;
     for (f->n = 1; f->n <= d->found; f->n++) {
-        SEQ_TRY(d, f, PL_JOB_WRITE, f->n, BQ76PL536_ADC_CONTROL, pl_adc_control(d, f->n) & (uint8_t)~BQ76PL536_ADC_ON);
+        SEQ_TRY(d, f, PL_JOB_WRITE, f->n, BQ76PL536_ADC_CONTROL,
+                pl_adc_control(d, f->n) & (uint8_t)~BQ76PL536_ADC_ON);
         SEQ_TRY(d, f, PL_JOB_WRITE, f->n, BQ76PL536_CB_TIME, 0); /* PL-SLEEP-11 */
         pl_dev(d, f->n)->flags &= (uint16_t)~PL_DEV_CB_TIME;
     }
@@ -46,9 +48,11 @@ bq_status pl_job_sleep(bq76pl536 *d, bq76pl536_frame *f)
 bq_status pl_job_wake(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_IO_CONTROL, pl_io_control(d))); /* 11-05 */
+    SEQ_SEND(f,
+             pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_IO_CONTROL, pl_io_control(d))); /* 11-05 */
     SEQ_WAIT(d, f, PL_WAKE_US);
-    for (f->n = 1; f->n <= d->found; f->n++) { /* 11-05 .. 11-07: every device anew, also one that was reset in SLEEP */
+    for (f->n = 1; f->n <= d->found;
+         f->n++) { /* 11-05 .. 11-07: every device anew, also one that was reset in SLEEP */
         SEQ_CALL(d, f, PL_JOB_READ, f->n, BQ76PL536_ALERT_STATUS, 2);
         if (d->result == BQ_E_NO_ANSWER) {
             SEQ_TRY(d, f, PL_JOB_RELOCATE, f->n, 0, 0);
@@ -67,7 +71,8 @@ bq_status pl_job_wake(bq76pl536 *d, bq76pl536_frame *f)
         if ((f->x & BQ76PL536_ALERT_SLEEP) != 0u) {
             SEQ_TRY(d, f, PL_JOB_CLEAR, f->n, BQ76PL536_ALERT_STATUS, BQ76PL536_ALERT_SLEEP);
         }
-        /* a comparator flag that rose while the reference settled is cleared once; an older one stays (PL-AMB-89) */
+        /* a comparator flag that rose while the reference settled is cleared once; an older one stays
+         * (PL-AMB-89) */
         f->i &= (uint8_t)(~pl_dev(d, f->n)->fault & (BQ76PL536_FAULT_COV | BQ76PL536_FAULT_CUV));
         if (f->i != 0u) {
             SEQ_CALL(d, f, PL_JOB_CLEAR, f->n, BQ76PL536_FAULT_STATUS, f->i);

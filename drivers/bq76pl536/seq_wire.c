@@ -13,7 +13,8 @@ static int drop(const bq76pl536 *d, const bq76pl536_device *dev, unsigned i)
     return (int)dev->cell_mv[i] - (int)mv;
 }
 
-/* A reading that collapses under its own output hangs on an open wire: the one shared with the neighbour that rose. */
+/* A reading that collapses under its own output hangs on an open wire: the one shared with the neighbour that
+ * rose. */
 static uint8_t judge(const bq76pl536 *d, unsigned n, unsigned cell)
 {
     const bq76pl536_device *dev = &d->devices[n - 1u];

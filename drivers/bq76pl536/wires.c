@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Open sense wires, passively (PL-SEQ-14-02, 14-03). Wire 0 is the bottom of the device, wire w the top of cell w.
- * Two signs: the brick differs from the sum of the cells (bottom or top wire, or a cell that vanished), or two neighbours
- * moved in opposite directions by the same amount since their last good values (the wire between them).
+ * Open sense wires, passively (PL-SEQ-14-02, 14-03). Wire 0 is the bottom of the device, wire w the top of
+ * cell w. Two signs: the brick differs from the sum of the cells (bottom or top wire, or a cell that
+ * vanished), or two neighbours moved in opposite directions by the same amount since their last good values
+ * (the wire between them).
  */
 #include "pl536_internal.h"
 
-#define VANISHED_MV 1000u /* no last good value to compare with: a reading this low is not a cell (PL-ELEC-01) */
-#define PAIR_MV 30        /* how equal the two movements must be, plus an eighth of them */
+#define VANISHED_MV                                                                                          \
+    1000u          /* no last good value to compare with: a reading this low is not a cell (PL-ELEC-01) */
+#define PAIR_MV 30 /* how equal the two movements must be, plus an eighth of them */
 
 static int magnitude(int value)
 {

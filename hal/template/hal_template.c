@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * An empty port. Interrupts may exist in here; they only record (set h->outcome, clear h->busy). Everything else runs in the
- * context that calls the library.
+ * An empty port. Interrupts may exist in here; they only record (set h->outcome, clear h->busy). Everything
+ * else runs in the context that calls the library.
  */
 #include "hal_template.h"
 
@@ -16,9 +16,10 @@ static bq_status spi_start(void *ctx, const uint8_t *tx, uint8_t *rx, size_t len
     if (h->busy) {
         return BQ_E_BUSY;
     }
-    /* FILL IN: CS low; start the DMA of `len` bytes from `tx` to `rx` (SPI mode 1, MSB first), set h->busy and return BQ_OK.
-     * Without DMA: move the bytes here, no pause above 100 us, CS high, h->outcome = BQ_OK, h->busy = true, return BQ_OK.
-     * At least 3 us of CS high before the next packet: wait them here, before CS goes low. */
+    /* FILL IN: CS low; start the DMA of `len` bytes from `tx` to `rx` (SPI mode 1, MSB first), set h->busy
+     * and return BQ_OK. Without DMA: move the bytes here, no pause above 100 us, CS high, h->outcome = BQ_OK,
+     * h->busy = true, return BQ_OK. At least 3 us of CS high before the next packet: wait them here, before
+     * CS goes low. */
     h->outcome = BQ_E_UNSUPPORTED;
     return BQ_E_BUS;
 }
@@ -26,8 +27,8 @@ static bq_status spi_start(void *ctx, const uint8_t *tx, uint8_t *rx, size_t len
 static bq_status spi_poll(void *ctx)
 {
     hal_template *h = ctx;
-    /* FILL IN: BQ_PENDING while the DMA runs; BQ_E_TIMEOUT, with the transfer stopped and CS high, when it takes longer than twice
-     * its nominal time plus 1 ms. */
+    /* FILL IN: BQ_PENDING while the DMA runs; BQ_E_TIMEOUT, with the transfer stopped and CS high, when it
+     * takes longer than twice its nominal time plus 1 ms. */
     h->busy = false;
     return h->outcome;
 }
@@ -36,7 +37,8 @@ static bq_status spi_set_clock(void *ctx, uint32_t hz)
 {
     (void)ctx;
     (void)hz;
-    /* FILL IN: the fastest divider that does not exceed `hz`; BQ_E_RANGE if there is none. Or put NULL into the table. */
+    /* FILL IN: the fastest divider that does not exceed `hz`; BQ_E_RANGE if there is none. Or put NULL into
+     * the table. */
     return BQ_E_RANGE;
 }
 
@@ -49,15 +51,16 @@ static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *se
     if (segments == NULL || count == 0u) {
         return BQ_E_ARG;
     }
-    /* FILL IN: each segment begins with START (or repeated START) and the address byte; STOP where stop_after says so and
-     * after the last one. */
+    /* FILL IN: each segment begins with START (or repeated START) and the address byte; STOP where stop_after
+     * says so and after the last one. */
     return BQ_E_ARBITRATION;
 }
 
 static bq_status i2c_poll(void *ctx)
 {
     (void)ctx;
-    /* FILL IN: BQ_PENDING, BQ_OK, BQ_E_NACK, BQ_E_ARBITRATION, BQ_E_TIMEOUT (stretching beyond 10 ms) or BQ_E_BUS. */
+    /* FILL IN: BQ_PENDING, BQ_OK, BQ_E_NACK, BQ_E_ARBITRATION, BQ_E_TIMEOUT (stretching beyond 10 ms) or
+     * BQ_E_BUS. */
     return BQ_E_BUS;
 }
 
@@ -91,7 +94,8 @@ static bq_status line_write(void *ctx, bq_line line, bool level)
         return BQ_E_ARG;
     }
     switch (line) {
-    /* FILL IN: CONV, VPP (manufacturing only), AFE_POWER, AFE_BOOT, CONTACTOR, PRECHARGE: the ones the board has. */
+    /* FILL IN: CONV, VPP (manufacturing only), AFE_POWER, AFE_BOOT, CONTACTOR, PRECHARGE: the ones the board
+     * has. */
     default:
         return BQ_E_UNSUPPORTED;
     }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file hal_template.h
- * An empty port: copy this folder, rename `template`, fill the places marked FILL IN. It compiles as it stands and refuses
- * everything, so that a forgotten place is noticed. The rules each function must keep are in bqhost/hal.h.
+ * An empty port: copy this folder, rename `template`, fill the places marked FILL IN. It compiles as it
+ * stands and refuses everything, so that a forgotten place is noticed. The rules each function must keep are
+ * in bqhost/hal.h.
  */
 #ifndef HAL_TEMPLATE_H
 #define HAL_TEMPLATE_H
@@ -15,12 +16,14 @@ extern "C" {
 
 /** Everything a port needs to remember; the caller owns it. Members are private. */
 typedef struct hal_template {
-    bool busy;            /* an SPI transfer runs */
-    bq_status outcome;    /* set where the transfer ends: interrupt, DMA flag, or the last byte of a polled loop */
-    uint32_t last_ticks;  /* for the microsecond counter */
+    bool busy; /* an SPI transfer runs */
+    bq_status
+        outcome; /* set where the transfer ends: interrupt, DMA flag, or the last byte of a polled loop */
+    uint32_t last_ticks; /* for the microsecond counter */
 } hal_template;
 
-/** Sets up pins and peripherals: all outputs inactive, SCLK and SDI low, CS high (PL-SEQ-01-01). BQ_OK or the port's own error. */
+/** Sets up pins and peripherals: all outputs inactive, SCLK and SDI low, CS high (PL-SEQ-01-01). BQ_OK or the
+ * port's own error. */
 bq_status hal_template_init(hal_template *h);
 
 /** The tables for the drivers' init functions; `h` must outlive them. */

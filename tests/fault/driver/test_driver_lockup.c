@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* ADC lock-up: PL-SEQ-05. The lock-up itself is somebody else's doing here; the driver must never cause it. */
+/* ADC lock-up: PL-SEQ-05. The lock-up itself is somebody else's doing here; the driver must never cause it.
+ */
 #include "driver_rig.h"
 #include "unity.h"
 #include <string.h>

@@ -63,7 +63,8 @@ static void a_broken_link_keeps_the_devices_below_in_use(void)
 }
 
 /* Device k loses its supply for a moment, for every k.
- * proves: PL-SEQ-13-04, PL-SEQ-13-05, PL-SEQ-13-06, PL-SEQ-13-07, PL-ADR-09, PL-ADR-10, PL-POR-10, PL-POR-11, PL-SEQ-08-05 */
+ * proves: PL-SEQ-13-04, PL-SEQ-13-05, PL-SEQ-13-06, PL-SEQ-13-07, PL-ADR-09, PL-ADR-10, PL-POR-10, PL-POR-11,
+ * PL-SEQ-08-05 */
 static void a_device_that_lost_its_supply_comes_back_configured(void)
 {
     for (int k = 1; k <= 5; k++) {

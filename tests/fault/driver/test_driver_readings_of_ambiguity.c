@@ -145,7 +145,8 @@ static void life(bool pin)
     c.use_conv_pin = pin;
     memcpy(c.user, user, 4);
     rig_up(&r, &c, reading);
-    TEST_ASSERT_EQUAL_INT(reading != NULL && reading->amb100_user_readonly, bq76pl536_diagnose(&r.d)->user_readonly);
+    TEST_ASSERT_EQUAL_INT(reading != NULL && reading->amb100_user_readonly,
+                          bq76pl536_diagnose(&r.d)->user_readonly);
     scan();
     expect_all_fresh();
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_self_test(&r.d));
@@ -166,12 +167,12 @@ static void both_ways(const sim_pl_options *options)
     life(true);
 }
 
-#define READING(field)                                                                                                 \
-    do {                                                                                                               \
-        sim_pl_options o;                                                                                              \
-        memset(&o, 0, sizeof o);                                                                                       \
-        o.field = true;                                                                                                \
-        both_ways(&o);                                                                                                 \
+#define READING(field)                                                                                       \
+    do {                                                                                                     \
+        sim_pl_options o;                                                                                    \
+        memset(&o, 0, sizeof o);                                                                             \
+        o.field = true;                                                                                      \
+        both_ways(&o);                                                                                       \
     } while (0)
 
 static void the_reading_chosen(void)

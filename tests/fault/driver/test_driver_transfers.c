@@ -143,9 +143,10 @@ static void no_job_hangs_on_a_dead_back_end(void)
         r.hal.fail_at = n;
         r.hal.fail_count = 1000000;
         uint64_t before = r.hal.transfers;
-        bq_status st = n % 4 == 0 ? bq76pl536_self_test(&r.d) : n % 4 == 1 ? bq76pl536_scan(&r.d)
-                                : n % 4 == 2                               ? bq76pl536_wire_test(&r.d)
-                                                                           : bq76pl536_sleep(&r.d);
+        bq_status st = n % 4 == 0   ? bq76pl536_self_test(&r.d)
+                       : n % 4 == 1 ? bq76pl536_scan(&r.d)
+                       : n % 4 == 2 ? bq76pl536_wire_test(&r.d)
+                                    : bq76pl536_sleep(&r.d);
         TEST_ASSERT_EQUAL_INT(BQ_OK, st);
         TEST_ASSERT_TRUE(rig_run(&r, 60) != BQ_PENDING);
         TEST_ASSERT_TRUE(r.hal.transfers - before < 2000);

@@ -37,7 +37,8 @@ void rig_open(driver_rig *r, const bq76pl536_config *config, const sim_pl_option
     r->sample.cell_capacity = RIG_CELLS;
     r->sample.temp_capacity = BQ76PL536_MAX_DEVICES * 2;
     r->sample.module_capacity = BQ76PL536_MAX_DEVICES;
-    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_init(&r->d, config, &spi, &gpio, &clock, r->devices, BQ76PL536_MAX_DEVICES));
+    TEST_ASSERT_EQUAL_INT(
+        BQ_OK, bq76pl536_init(&r->d, config, &spi, &gpio, &clock, r->devices, BQ76PL536_MAX_DEVICES));
 }
 
 bq_status rig_run(driver_rig *r, double seconds)

@@ -23,7 +23,8 @@ typedef struct driver_rig {
     uint32_t polls, most_packets_per_poll; /* of the last rig_run() */
 } driver_rig;
 
-/* 4.20 V / 2.8 V / 60 C, 500 ms each, two sensors, full cells: a configuration every test may change before rig_open(). */
+/* 4.20 V / 2.8 V / 60 C, 500 ms each, two sensors, full cells: a configuration every test may change before
+ * rig_open(). */
 bq76pl536_config rig_config(int devices);
 /* Powers the stack up and initialises the driver; the test fails if init refuses. */
 void rig_open(driver_rig *r, const bq76pl536_config *config, const sim_pl_options *options);

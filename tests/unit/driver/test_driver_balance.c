@@ -9,9 +9,9 @@ static bq76pl536_config c;
 
 static struct spy {
     int nonzero_to_nonzero, time_while_on, high_bits;
-    int on_at_start;     /* outputs on when a conversion started */
-    uint64_t off_ns;     /* last CB_CTRL = 0 broadcast */
-    uint64_t settle_ns;  /* from there to the start */
+    int on_at_start;    /* outputs on when a conversion started */
+    uint64_t off_ns;    /* last CB_CTRL = 0 broadcast */
+    uint64_t settle_ns; /* from there to the start */
 } spy;
 
 static bool watch(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n)

@@ -11,7 +11,7 @@ static bq76pl536_config c;
 static struct spy {
     uint8_t order[64];
     unsigned writes;
-    int naked;       /* group-3 writes without the key directly before */
+    int naked; /* group-3 writes without the key directly before */
     bool key;
     int smallest_mv;
     int late_adc_on; /* ADCT set while ADC_ON = 0, or earlier than 1 ms after */
@@ -48,7 +48,8 @@ static bool watch(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n)
     if (tx[1] == 0x30 && (tx[2] & 0x40) != 0) {
         spy.adc_on_ns = sim_pl_now(&r.pl);
     }
-    if (tx[1] == 0x40 && (tx[2] & 0xc0) != 0 && (spy.adc_on_ns == 0 || sim_pl_now(&r.pl) - spy.adc_on_ns < SIM_PL_MS)) {
+    if (tx[1] == 0x40 && (tx[2] & 0xc0) != 0 &&
+        (spy.adc_on_ns == 0 || sim_pl_now(&r.pl) - spy.adc_on_ns < SIM_PL_MS)) {
         spy.late_adc_on++;
     }
     spy.test_select += tx[1] == 0x3d;
@@ -89,12 +90,13 @@ static void set_otp(int n, uint8_t reg, uint8_t value)
     TEST_ASSERT_EQUAL_INT(0, sim_pl_set_otp(&r.pl, n, reg, value));
 }
 
-/* proves: PL-SEQ-03-03, PL-SEQ-03-04, PL-SEQ-03-05, PL-SEQ-03-06, PL-SEQ-03-07, PL-SEQ-03-08, PL-SEQ-03-09, PL-SEQ-04-02, PL-SEQ-04-03,
- * PL-G3-02, PL-G3-10, PL-ADC-10, PL-ADC-13, PL-SEQ-00-04, PL-SEQ-00-05, PL-BCAST-03, PL-BCAST-05, PL-BCAST-06, PL-TEST-03, PL-NUM-34,
- * PL-NUM-35, PL-TIM-16, PL-TS-05, PL-TS-07 */
+/* proves: PL-SEQ-03-03, PL-SEQ-03-04, PL-SEQ-03-05, PL-SEQ-03-06, PL-SEQ-03-07, PL-SEQ-03-08, PL-SEQ-03-09,
+ * PL-SEQ-04-02, PL-SEQ-04-03, PL-G3-02, PL-G3-10, PL-ADC-10, PL-ADC-13, PL-SEQ-00-04, PL-SEQ-00-05,
+ * PL-BCAST-03, PL-BCAST-05, PL-BCAST-06, PL-TEST-03, PL-NUM-34, PL-NUM-35, PL-TIM-16, PL-TS-05, PL-TS-07 */
 static void writes_and_verifies_every_register_in_order(void)
 {
-    static const uint8_t group3[12] = {0x50, 0x00, 0x2c, 0x85, 0x15, 0x85, 0x55, 0x32, 0x5a, 0x01, 0x02, 0x03};
+    static const uint8_t group3[12] = {0x50, 0x00, 0x2c, 0x85, 0x15, 0x85,
+                                       0x55, 0x32, 0x5a, 0x01, 0x02, 0x03};
     static const uint8_t user[4] = {0x5a, 0x01, 0x02, 0x03};
     memcpy(c.user, user, 4);
     open_with_spy();

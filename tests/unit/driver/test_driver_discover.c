@@ -87,7 +87,8 @@ static void the_first_conversion_waits_without_long_delays_too(void)
     TEST_ASSERT_TRUE(spy.first_convert_ns >= 120 * SIM_PL_MS);
 }
 
-/* proves: PL-SEQ-02-01, PL-SEQ-02-02, PL-SEQ-02-03, PL-SEQ-02-04, PL-SEQ-02-07, PL-ADR-11, PL-ADR-12, PL-ADR-15, PL-ADR-16, PL-AMB-29 */
+/* proves: PL-SEQ-02-01, PL-SEQ-02-02, PL-SEQ-02-03, PL-SEQ-02-04, PL-SEQ-02-07, PL-ADR-11, PL-ADR-12,
+ * PL-ADR-15, PL-ADR-16, PL-AMB-29 */
 static void follows_the_growing_loop(void)
 {
     open_with_spy(NULL);
@@ -117,7 +118,8 @@ static void finds_a_stack_that_already_has_addresses(void)
     TEST_ASSERT_FALSE(sim_pl_alert_pin(&r.pl));
     TEST_ASSERT_FALSE(sim_pl_fault_pin(&r.pl));
     /* addresses in a wrong order, given by somebody else */
-    static const uint8_t swap[][4] = {{0x7f, 0x3c, 0xa5, 0x57}, {0x01, 0x3b, 0x02, 0x0b}, {0x01, 0x3b, 0x01, 0x02}};
+    static const uint8_t swap[][4] = {
+        {0x7f, 0x3c, 0xa5, 0x57}, {0x01, 0x3b, 0x02, 0x0b}, {0x01, 0x3b, 0x01, 0x02}};
     uint8_t rx[4];
     for (unsigned i = 0; i < 3; i++) {
         sim_pl_spi(&r.pl, swap[i], rx, NULL, 4);

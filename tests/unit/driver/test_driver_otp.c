@@ -56,8 +56,8 @@ static void nothing_programmed(void)
     }
 }
 
-/* proves: PL-SEQ-12-02, PL-SEQ-12-03, PL-SEQ-12-04, PL-SEQ-12-05, PL-SEQ-12-06, PL-SEQ-12-07, PL-SEQ-12-08, PL-OTP-06, PL-OTP-07, PL-TIM-26,
- * PL-AMB-103, PL-AMB-104, PL-AMB-105, PL-OTP-08 */
+/* proves: PL-SEQ-12-02, PL-SEQ-12-03, PL-SEQ-12-04, PL-SEQ-12-05, PL-SEQ-12-06, PL-SEQ-12-07, PL-SEQ-12-08,
+ * PL-OTP-06, PL-OTP-07, PL-TIM-26, PL-AMB-103, PL-AMB-104, PL-AMB-105, PL-OTP-08 */
 static void programs_once_and_proves_it_after_a_reset(void)
 {
     TEST_ASSERT_EQUAL_INT(BQ_OK, program(image));

@@ -47,7 +47,8 @@ static void spy_on(void)
     sim_pl_bus_fault(&r.pl)->hook = watch;
 }
 
-/* proves: PL-SEQ-06-01, PL-SEQ-06-02, PL-SEQ-06-03, PL-SEQ-06-04, PL-SEQ-06-09, PL-CONV-09, PL-CONV-12, PL-PKT-08, PL-PKT-15, PL-VEC-12 */
+/* proves: PL-SEQ-06-01, PL-SEQ-06-02, PL-SEQ-06-03, PL-SEQ-06-04, PL-SEQ-06-09, PL-CONV-09, PL-CONV-12,
+ * PL-PKT-08, PL-PKT-15, PL-VEC-12 */
 static void a_quiet_scan_is_one_broadcast_and_one_burst_each(void)
 {
     static const int sizes[] = {1, 2, 3, 32, 62};

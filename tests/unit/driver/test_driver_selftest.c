@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Self-test of the FAULT and ALERT chains: PL-SEQ-09. The simulator's chains are whole; a break is made by a board whose lines
- * are read only for the devices below it. */
+/* Self-test of the FAULT and ALERT chains: PL-SEQ-09. The simulator's chains are whole; a break is made by a
+ * board whose lines are read only for the devices below it. */
 #include "driver_rig.h"
 #include "unity.h"
 #include <string.h>
@@ -149,7 +149,7 @@ static void a_chain_that_is_already_high_is_left_out(void)
     rig_advance_ms(&r, 600);
     TEST_ASSERT_EQUAL_INT(BQ_OK, self_test());
     TEST_ASSERT_TRUE(bq76pl536_diagnose(&r.d)->chain_skipped);
-    TEST_ASSERT_EQUAL_INT(1, forced[5]); /* ALERT only */
+    TEST_ASSERT_EQUAL_INT(1, forced[5]);                       /* ALERT only */
     TEST_ASSERT_EQUAL_HEX8(0x01, sim_pl_peek(&r.pl, 2, 0x21)); /* the real flag was not touched */
 }
 

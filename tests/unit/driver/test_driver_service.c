@@ -46,7 +46,8 @@ static void scan(void)
     rig_sample(&r);
 }
 
-/* proves: PL-SEQ-08-01, PL-SEQ-08-02, PL-SEQ-08-06, PL-FLT-14, PL-FLT-19, PL-SEQ-08-10, PL-SEQ-00-06, PL-COV-07, PL-AMB-33, PL-AMB-34, PL-AMB-36 */
+/* proves: PL-SEQ-08-01, PL-SEQ-08-02, PL-SEQ-08-06, PL-FLT-14, PL-FLT-19, PL-SEQ-08-10, PL-SEQ-00-06,
+ * PL-COV-07, PL-AMB-33, PL-AMB-34, PL-AMB-36 */
 static void overvoltage_is_reported_and_cleared_only_on_request(void)
 {
     scan();
@@ -198,7 +199,8 @@ static void an_uncorrectable_eprom_error_ends_as_a_defective_device(void)
         rig_advance_ms(&r, 100);
     }
     rig_sample(&r);
-    TEST_ASSERT_EQUAL_HEX16(BQ_F_DEFECTIVE | BQ_F_MEMORY, r.modules[1].faults & (BQ_F_DEFECTIVE | BQ_F_MEMORY));
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_DEFECTIVE | BQ_F_MEMORY,
+                            r.modules[1].faults & (BQ_F_DEFECTIVE | BQ_F_MEMORY));
     TEST_ASSERT_EQUAL_HEX8(BQ_Q_CHIP, r.cells[6].quality);
     TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.cells[0].quality);
     TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.cells[12].quality); /* it still serves as a link */

@@ -30,7 +30,8 @@ static bq_status wake(void)
     return rig_run(&r, 10);
 }
 
-/* proves: PL-SEQ-11-01, PL-SEQ-11-02, PL-SEQ-11-03, PL-SEQ-11-04, PL-SLEEP-04, PL-SLEEP-07, PL-SLEEP-11, PL-SLEEP-12, PL-AMB-86, PL-AMB-90 */
+/* proves: PL-SEQ-11-01, PL-SEQ-11-02, PL-SEQ-11-03, PL-SEQ-11-04, PL-SLEEP-04, PL-SLEEP-07, PL-SLEEP-11,
+ * PL-SLEEP-12, PL-AMB-86, PL-AMB-90 */
 static void everything_is_off_and_silent_in_sleep(void)
 {
     bq_mask_set(r.action.balance, 1);

@@ -36,7 +36,7 @@ static void an_open_end_wire_is_named_after_three_cycles(void)
         scans(1);
         (void)sim_pl_set_wire(&r.pl, 2, wires[i], true);
         scans(2);
-        TEST_ASSERT_EQUAL_HEX16(0, r.modules[1].faults); /* several cycles, not one */
+        TEST_ASSERT_EQUAL_HEX16(0, r.modules[1].faults);               /* several cycles, not one */
         TEST_ASSERT_EQUAL_HEX8(BQ_Q_OPEN_WIRE, r.cells[cell].quality); /* but nothing doubtful counts */
         TEST_ASSERT_EQUAL_UINT(3600, r.cells[cell].mv);
         scans(1);
