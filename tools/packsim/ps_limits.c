@@ -42,6 +42,11 @@ static const struct {
 
 #define FIELDS ((int)(sizeof fields / sizeof fields[0]))
 
+bool ps_limit_follows(const char *key)
+{
+    return strcmp(key, "cells") == 0 || strcmp(key, "sensors") == 0 || strcmp(key, "modules") == 0;
+}
+
 const char *ps_limit_name(int i)
 {
     if (i < FIELDS) {
@@ -86,7 +91,7 @@ static int apply_key(ps_scenario *s, const char *key, const char *text, ps_place
     if (known == 1 && bq_pack_config_get(&s->app.pack, key, &old) != BQ_OK) {
         return ps_fail(e, at, "unknown key %s in [limits]", key);
     }
-    if (strcmp(key, "cells") == 0 || strcmp(key, "sensors") == 0 || strcmp(key, "modules") == 0) {
+    if (ps_limit_follows(key)) {
         return ps_fail(e, at, "%s follows from [pack]", key);
     }
     if (!ps_int(text, &value)) {

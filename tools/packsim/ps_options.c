@@ -166,6 +166,9 @@ void ps_options_help(FILE *to)
     (void)fputs("[limits] integers under the firmware's own names:\n", to);
     int column = 0;
     for (int i = 0; ps_limit_name(i) != NULL; i++) {
+        if (ps_limit_follows(ps_limit_name(i))) {
+            continue;
+        }
         column += fprintf(to, "%s %s", column == 0 ? "        " : ",", ps_limit_name(i));
         if (column > 90) {
             (void)fputs(",\n", to);

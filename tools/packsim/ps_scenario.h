@@ -130,6 +130,8 @@ void ps_limits_default(ps_scenario *s, bool lfp);
 int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e);
 /** Name of key i of [limits] for help; NULL past the end. */
 const char *ps_limit_name(int i);
+/** Fields of the firmware that follow from [pack] and cannot be given in [limits]. */
+bool ps_limit_follows(const char *key);
 
 /** Numbers of the firmware's names; -1 when unknown. */
 int ps_state_number(const char *name);
