@@ -80,7 +80,6 @@ static void start_time(bq_app *app)
 {
     app->last_us = app->clock.now_us(app->clock.ctx);
     app->tick_us = app->last_us;
-    app->step_us = app->last_us;
     app->step_now = true;
 }
 

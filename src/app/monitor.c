@@ -27,7 +27,6 @@ static void lose_monitor(bq_app *app, bq_pack_monitor state, bq_status status)
     app->input.self_test = BQ_TEST_NONE;
     app->input.apply_status = BQ_OK;
     app->scanned = false;
-    app->scan_due = false;
     app->apply_due = false;
     app->asleep = false;
     begin_pause(app);

@@ -243,6 +243,24 @@ static void test_a_failed_self_test_keeps_the_outputs_off_and_is_repeated(void)
     TEST_ASSERT_EQUAL(4, f.job[BQ_JOB_SELF_TEST].begun);
 }
 
+static void test_the_self_test_waits_for_a_good_scan_after_every_bring_up(void)
+{
+    fake_on(&f);
+    f.job[BQ_JOB_SCAN].end = BQ_E_NO_ANSWER;
+    fake_run(&f, 2000);
+    TEST_ASSERT_EQUAL(2, counters()->bring_ups);
+    TEST_ASSERT_EQUAL(1, f.job[BQ_JOB_SELF_TEST].begun);
+    f.job[BQ_JOB_SCAN].end = BQ_OK;
+    comes_back();
+}
+
+static void test_the_first_scan_follows_bring_up_at_once(void)
+{
+    fake_run(&f, 50);
+    TEST_ASSERT_EQUAL(1, f.job[BQ_JOB_SCAN].begun);
+    TEST_ASSERT_LESS_OR_EQUAL(3050, f.job[BQ_JOB_SCAN].begun_us - f.job[BQ_JOB_START].begun_us);
+}
+
 static void test_a_self_test_that_hangs_never_reaches_standby(void)
 {
     f.job[BQ_JOB_SELF_TEST].takes_us = FAKE_HANG;
@@ -333,6 +351,8 @@ int main(void)
     RUN_TEST(test_bring_up_that_cannot_begin_counts_as_failed);
     RUN_TEST(test_bring_up_that_hangs_is_reported);
     RUN_TEST(test_a_failed_self_test_keeps_the_outputs_off_and_is_repeated);
+    RUN_TEST(test_the_self_test_waits_for_a_good_scan_after_every_bring_up);
+    RUN_TEST(test_the_first_scan_follows_bring_up_at_once);
     RUN_TEST(test_a_self_test_that_hangs_never_reaches_standby);
     RUN_TEST(test_the_contactor_does_not_close_before_an_action_succeeded);
     RUN_TEST(test_actions_that_keep_failing_open_the_contactor);

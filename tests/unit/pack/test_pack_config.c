@@ -159,6 +159,8 @@ static void test_what_is_switched_off_contradicts_nothing(void)
     c.imbalance_mv = 0;
     c.imbalance_clear_mv = 0;
     c.balance_start_mv = 0;
+    c.modules = 62;
+    c.cells = 62; /* and a chip per cell is possible */
     TEST_ASSERT_EQUAL(BQ_OK, bq_pack_config_validate(&c, &field));
 }
 
@@ -180,6 +182,9 @@ static void test_init_refuses_what_validation_refuses_and_changes_nothing(void)
     TEST_ASSERT_EQUAL(BQ_OK, bq_pack_init(&p, &c));
     TEST_ASSERT_EQUAL(BQ_PACK_INIT, p.state);
     TEST_ASSERT_EQUAL(-1, p.summary.soc_permille);
+    memset(&before, 0, sizeof before);
+    TEST_ASSERT_EQUAL(BQ_OK, bq_pack_init(&before, &c));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &p, sizeof p); /* whatever lay in the memory before */
 }
 
 int main(void)

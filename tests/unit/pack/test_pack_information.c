@@ -149,6 +149,25 @@ static void test_a_lost_module_is_named_after_the_timeout_and_recovers(void)
     healthy();
 }
 
+static void test_readings_marked_as_lost_count_as_silence_of_their_module(void)
+{
+    for (int i = 6; i < 12; i++) {
+        r.cells[i].quality = BQ_Q_COMM;
+    }
+    rig_run(&r, 500);
+    only(BQ_FAULT_COMM_LOSS);
+    TEST_ASSERT_EQUAL(2, r.p.fault[BQ_FAULT_COMM_LOSS].device);
+}
+
+static void test_of_equal_values_the_lowest_number_is_shown(void)
+{
+    TEST_ASSERT_EQUAL(1, r.p.summary.cell_max);
+    TEST_ASSERT_EQUAL(1, r.p.summary.cell_min);
+    TEST_ASSERT_EQUAL(1, r.p.summary.temp_max);
+    TEST_ASSERT_EQUAL(1, r.p.summary.temp_min);
+    TEST_ASSERT_EQUAL(12 * 3700, r.p.summary.pack_mv);
+}
+
 static void test_an_age_beyond_the_timeout_trips_although_marked_valid(void)
 {
     r.now_ms += 100;
@@ -335,6 +354,8 @@ int main(void)
     RUN_TEST(test_one_lost_scan_trips_nothing);
     RUN_TEST(test_modules_lost_in_turn_trip_nothing_while_each_is_seen_in_time);
     RUN_TEST(test_a_lost_module_is_named_after_the_timeout_and_recovers);
+    RUN_TEST(test_readings_marked_as_lost_count_as_silence_of_their_module);
+    RUN_TEST(test_of_equal_values_the_lowest_number_is_shown);
     RUN_TEST(test_an_age_beyond_the_timeout_trips_although_marked_valid);
     RUN_TEST(test_a_cell_without_a_reading_is_named);
     RUN_TEST(test_a_sensor_without_a_reading_is_named);

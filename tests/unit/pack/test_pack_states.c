@@ -272,6 +272,24 @@ static void test_debounce_begins_again_after_sleep(void)
     TEST_ASSERT_EQUAL(1u << BQ_FAULT_CELL_UV, r.p.faults);
 }
 
+static void test_recovery_begins_again_after_sleep(void)
+{
+    rig_on(&r);
+    r.modules[0].faults = BQ_F_MEMORY;
+    rig_scan(&r);
+    r.modules[0].faults = 0;
+    rig_run(&r, 900); /* 800 of 1000 ms */
+    r.in.request = BQ_REQUEST_SLEEP;
+    rig_scan(&r);
+    TEST_ASSERT_EQUAL(BQ_PACK_SLEEP, r.p.state);
+    r.in.request = BQ_REQUEST_ON;
+    rig_scan(&r);
+    rig_run(&r, 1000);
+    TEST_ASSERT_EQUAL(1u << BQ_FAULT_CHIP, r.p.faults);
+    rig_scan(&r);
+    TEST_ASSERT_EQUAL(0, r.p.faults);
+}
+
 static void test_a_fault_survives_sleep(void)
 {
     rig_on(&r);
@@ -451,6 +469,7 @@ int main(void)
     RUN_TEST(test_a_long_sleep_is_not_a_fault_and_waking_starts_again);
     RUN_TEST(test_silence_right_after_waking_trips_after_the_timeout);
     RUN_TEST(test_debounce_begins_again_after_sleep);
+    RUN_TEST(test_recovery_begins_again_after_sleep);
     RUN_TEST(test_a_fault_survives_sleep);
     RUN_TEST(test_names);
     RUN_TEST(test_the_directions_of_every_fault);

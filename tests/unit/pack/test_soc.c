@@ -159,7 +159,10 @@ static void test_unusable_tables_are_refused(void)
     static const bq_ocv_point above[] = {{0, 3000}, {1001, 4200}};
 
     TEST_ASSERT_TRUE(bq_soc_config_ok(&c));
+    c.rest_ma = 0;
     c.points = 2;
+    c.capacity_mah = 4000000;
+    TEST_ASSERT_TRUE(bq_soc_config_ok(&c));
     c.ocv = back;
     TEST_ASSERT_FALSE(bq_soc_config_ok(&c));
     c.ocv = falls;
