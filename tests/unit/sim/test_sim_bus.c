@@ -110,6 +110,23 @@ static void test_flips_are_seen_and_not_judged(void)
     TEST_ASSERT_EQUAL(-1, get(1, 0x3b));
     TEST_ASSERT_EQUAL(0x81, get(1, 0x3b));
     TEST_ASSERT_EQUAL(2, f->flips);
+    f->flip_mosi_bit = 1; /* the very first bit: nobody is meant any more */
+    TEST_ASSERT_EQUAL(-1, get(1, 0x3b));
+    TEST_ASSERT_EQUAL(0, driven[3]);
+    TEST_ASSERT_EQUAL(3, f->flips);
+}
+
+/* proves: PL-PKT-11 */
+static void test_a_read_may_end_inside_a_byte(void)
+{
+    static const uint8_t tx[5] = {0x02, 0x3b, 0x01, 0x00, 0x00};
+
+    sim_pl_spi_bits(&s, tx, rx, driven, 36);
+    TEST_ASSERT_EQUAL_HEX8(0x81, rx[3]);
+    TEST_ASSERT_EQUAL_HEX8(0xb0, rx[4]); /* four bits of the CRC */
+    TEST_ASSERT_EQUAL_HEX8(0x81, peek(1, 0x3b));
+    expect_one_misuse("PL-PKT-04");
+    TEST_ASSERT_EQUAL(0x81, get(1, 0x3b));
 }
 
 static void test_lost_key_is_not_judged(void)
@@ -353,6 +370,7 @@ int main(void)
     RUN_TEST(test_stale_addresses_are_no_mistake);
     RUN_TEST(test_variant_keeps_crc_errors_off_the_line);
     RUN_TEST(test_flips_are_seen_and_not_judged);
+    RUN_TEST(test_a_read_may_end_inside_a_byte);
     RUN_TEST(test_lost_key_is_not_judged);
     RUN_TEST(test_what_a_lost_write_leaves_is_not_judged_at_once);
     RUN_TEST(test_dead_stuck_late_and_short);

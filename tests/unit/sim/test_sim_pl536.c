@@ -228,9 +228,16 @@ static void test_converter_warms_up_again_after_uvlo(void)
     sim_pl_set_vbat(&s, 1, 5.0);
     sim_pl_advance(&s, 15 * SIM_PL_US);
     TEST_ASSERT_EQUAL(SIM_PL_UVLO, sim_pl_get_mode(&s, 1));
+    put(1, 0x33, 0x1e);
+    put(1, 0x32, 0x01);
+    TEST_ASSERT_EQUAL_HEX8(0x00, peek(1, 0x32));
     sim_pl_set_vbat(&s, 1, -1.0);
     put(1, 0x34, 0x01);
     TEST_ASSERT_EQUAL(521 * SIM_PL_US, sim_pl_next_event(&s));
+    sim_pl_advance(&s, SIM_PL_MS);
+    put(1, 0x30, 0x45); /* already on: no new warm-up */
+    put(1, 0x34, 0x01);
+    TEST_ASSERT_EQUAL(21 * SIM_PL_US, sim_pl_next_event(&s));
 }
 
 /* proves: PL-UVLO-01, PL-POR-01, PL-POR-03, PL-NUM-40 */
