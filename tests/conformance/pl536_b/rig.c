@@ -72,6 +72,9 @@ static bool transfer(int device, int reg, uint8_t *data, size_t n)
 {
     uint8_t tx[260] = {(uint8_t)(device << 1), (uint8_t)reg, (uint8_t)n};
     uint8_t rx[260], driven[260], all[260];
+    if (n > 255) {
+        return false;
+    }
     memset(driven, 0, sizeof driven);
     sim_pl_spi(&rig, tx, rx, driven, n + 4);
     for (size_t i = 3; i < n + 4; i++) {
