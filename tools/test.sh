@@ -38,14 +38,18 @@ suite() {
     local log=$TMPDIR/ctest-$1.log
     ctest --test-dir "$root/build/$1" -j "$jobs" --output-on-failure --no-tests=error 2>&1 | tee "$log" | grep -v -e '^ *Start ' -e ' Passed '
     # "100% tests passed, 0 tests failed out of 12"; a suite that did not get so far is one failure
-    local line bad all
+    local line bad all why
     line=$(grep -E '^[0-9]+% tests passed' "$log") || { failed=$((failed + 1)); return; }
     bad=$(sed -E 's/.* ([0-9]+) tests failed.*/\1/' <<<"$line")
     all=$(sed -E 's/.*out of ([0-9]+).*/\1/' <<<"$line")
     passed=$((passed + all - bad))
     failed=$((failed + bad))
-    while read -r name; do skip "$name in $1: see build/$1/Testing/Temporary/LastTest.log"; done \
-        < <(sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*Skipped.*/\1/p' "$log")
+    while read -r name; do
+        passed=$((passed - 1))
+        why=$(awk -v test="Testing: $name" 'substr($0, length($0) - length(test) + 1) == test { on = 1 }
+            on && sub(/^SKIPPED: /, "") { print; exit }' "$root/build/$1/Testing/Temporary/LastTest.log")
+        skip "$name in $1: ${why:-see build/$1/Testing/Temporary/LastTest.log}"
+    done < <(sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*Skipped.*/\1/p' "$log")
 }
 
 build dev && suite dev
