@@ -76,10 +76,12 @@ uint8_t pl_suspect_wires(const bq76pl536 *d, unsigned n, const uint16_t *mv)
     unsigned cells = pl_cells(d, n);
     int limit = d->config.wire_limit_mv;
     int sum = 0;
+    bool jumped = false;
     for (unsigned i = 0; i < cells; i++) {
         sum += mv[i];
+        jumped = jumped || magnitude((int)mv[i] - (int)dev->cell_mv[i]) > limit;
     }
-    uint8_t wires = explain_pairs(dev, cells, mv, limit);
+    uint8_t wires = jumped ? explain_pairs(dev, cells, mv, limit) : 0u; /* a quiet scan ends here */
     if (!d->gpai_pins && wires == 0u && magnitude((int)dev->gpai_mv - sum) > limit) {
         wires = explain_sum(dev, cells, mv, limit);
     }
