@@ -250,7 +250,7 @@ static void falling_clock(sim_x0 *s)
         return;
     }
     if (c->selected_read && !c->ack_phase) {
-        c->drive_low = ((c->data >> (7 - c->bits)) & 1u) == 0;
+        c->drive_low = (((unsigned)c->data >> (7 - c->bits)) & 1u) == 0;
     }
 }
 

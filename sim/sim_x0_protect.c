@@ -126,7 +126,7 @@ void x0_judge_balance(sim_x0 *s)
     for (int group = 0; group < s->part->cells / 5; group++) {
         bool below_on = false;
         for (int i = 5 * group; i < 5 * group + 5; i++) {
-            bool on = ((cb >> i) & 1u) != 0, shorted = s->cell[i] < 0.05;
+            bool on = (((unsigned)cb >> i) & 1u) != 0, shorted = s->cell[i] < 0.05;
             if (on && shorted) {
                 x0_misuse(s, "X0-CB-06", "balancing switch of a shorted input");
             }

@@ -120,7 +120,7 @@ static uint16_t cells_of(const bq769x0 *d, uint16_t inputs)
     unsigned mask = 0, n = 0;
     for (unsigned i = 0; i < d->config.inputs; i++) {
         if ((d->in_use >> i & 1u) != 0u) {
-            mask |= (unsigned)(inputs >> i & 1u) << n++;
+            mask |= ((unsigned)inputs >> i & 1u) << n++;
         }
     }
     return (uint16_t)mask;
@@ -170,7 +170,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
         return BQ_E_STALE;
     }
     for (unsigned i = 0; i < d->config.inputs; i++) {
-        if ((d->in_use >> i & 1u) != 0u) {
+        if (((unsigned)d->in_use >> i & 1u) != 0u) {
             int32_t uv = bq769x0_cell_uv(d->achieved.trim, d->code[i]);
             sum += uv < 0 ? 0u : ((uint32_t)uv + 500u) / 1000u;
         }

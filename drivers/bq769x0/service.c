@@ -12,7 +12,7 @@ static uint16_t flags_of(uint8_t stat)
                                      BQ_F_CELL_UV,     BQ_F_CHAIN, BQ_F_MEMORY};
     uint16_t flags = 0;
     for (unsigned i = 0; i < 6u; i++) {
-        if ((stat >> i & 1u) != 0u) {
+        if (((unsigned)stat >> i & 1u) != 0u) {
             flags |= flag[i];
         }
     }
@@ -196,7 +196,7 @@ bq_status x0_job_apply(bq769x0 *d, bq769x0_frame *f)
     }
     d->balance = choose(d);
     for (unsigned g = 0; g < 3u; g++) {
-        d->data[g] = (uint8_t)(d->balance >> (5u * g) & 0x1fu);
+        d->data[g] = (uint8_t)((unsigned)d->balance >> (5u * g) & 0x1fu);
     }
     SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_CELLBAL1, x0_groups(d));
     f->x = d->valid && d->temp_valid ? (uint8_t)(d->want_fets & ~forbidden(d->held)) : 0u;

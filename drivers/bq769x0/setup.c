@@ -24,7 +24,7 @@ static bq_status check_cells(const bq769x0_config *c, uint16_t *in_use)
     }
     /* each group is fed by its own cells: bottom, second and top input carry one (X0-CELL-16) */
     for (unsigned g = 0; g < c->inputs / 5u; g++) {
-        if ((*in_use >> (5u * g) & 0x13u) != 0x13u) {
+        if (((unsigned)*in_use >> (5u * g) & 0x13u) != 0x13u) {
             return BQ_E_CELLS;
         }
     }

@@ -167,7 +167,7 @@ bq_status x0_job_first(bq769x0 *d, bq769x0_frame *f)
         SEQ_TRY(d, f, X0_JOB_PICTURE, 0, 0);
         f->x = 0;
         for (unsigned i = 0; i < d->config.inputs; i++) {
-            bool carries = d->code[i] >= BQ769X0_UV_MINQUAL, should = (d->in_use >> i & 1u) != 0u;
+            bool carries = d->code[i] >= BQ769X0_UV_MINQUAL, should = ((unsigned)d->in_use >> i & 1u) != 0u;
             f->x |= (uint8_t)(carries != should);
         }
         if (f->x == 0u) {

@@ -68,8 +68,8 @@ bool bq769x0_balance_legal(uint16_t in_use, uint16_t mask, bool across_groups)
         if (i % 5u == 0u && !across_groups) {
             below = false;
         }
-        if (((in_use >> i) & 1u) != 0u) {
-            bool on = ((mask >> i) & 1u) != 0u;
+        if ((((unsigned)in_use >> i) & 1u) != 0u) {
+            bool on = (((unsigned)mask >> i) & 1u) != 0u;
             if (on && below) {
                 return false;
             }
