@@ -165,10 +165,11 @@ static bq_app_job next_job(const bq_app *app)
     if (app->apply_due) {
         return BQ_JOB_APPLY;
     }
-    if (app->scan_due) {
-        return BQ_JOB_SCAN;
+    /* before the next scan: scans that last a whole period would leave no room for it */
+    if (app->scanned && app->input.self_test != BQ_TEST_PASSED && !paused) {
+        return BQ_JOB_SELF_TEST;
     }
-    return app->scanned && app->input.self_test != BQ_TEST_PASSED && !paused ? BQ_JOB_SELF_TEST : BQ_JOB_NONE;
+    return app->scan_due ? BQ_JOB_SCAN : BQ_JOB_NONE;
 }
 
 static bq_status begin(bq_app *app, bq_app_job job)
