@@ -126,7 +126,8 @@ static void brick_vectors(void)
 }
 
 /* proves: PL-TS-01, PL-TS-02, PL-TS-03, PL-TS-04, PL-NUM-04, PL-NUM-05, PL-NUM-07, PL-NUM-11, PL-NUM-12,
- * PL-TS-08, PL-AMB-75 */
+ * PL-TS-08, PL-AMB-75,
+ * PL-TS-12 */
 static void temperature_vectors(void)
 {
     static const struct vector v[] = {

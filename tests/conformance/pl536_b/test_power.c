@@ -54,6 +54,30 @@ static void thresholds_falling_and_rising(void)
     EXPECT(0x61, 0, R_STATUS);
 }
 
+/* proves: PL-AMB-94 */
+static void works_from_uvlo_up_to_36_volts(void)
+{
+    static const double volts[] = {5.31, 6.0, 7.2, 27.0, 30.0, 33.0, 36.0};
+    rig_ready(1);
+    rig_adc(1, 0x45, 0x40);
+    rig_cov(0x2c, 0x01);
+    for (size_t i = 0; i < sizeof volts / sizeof volts[0]; i++) {
+        vbat(volts[i]);
+        sim_pl_set_cell(&rig, 1, 1, 3.6);
+        rig_ms(100);
+        MODE(SIM_PL_ACTIVE, 1);
+        rig_convert(1);
+        EXPECT_WORD(0x24dd, 1, R_CELL1);
+        sim_pl_set_cell(&rig, 1, 1, 4.3);
+        rig_ms(1);
+        EXPECT(0x01, 1, R_COV);
+        sim_pl_set_cell(&rig, 1, 1, 3.6);
+        rig_us(1);
+        rig_clear(1, R_FAULT, 0x01);
+        EXPECT(0x81, 1, R_STATUS);
+    }
+}
+
 /* proves: PL-UVLO-01, PL-TIM-20 */
 static void a_short_dip_is_not_seen(void)
 {
@@ -310,6 +334,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(thresholds_falling_and_rising);
+    RUN_TEST(works_from_uvlo_up_to_36_volts);
     RUN_TEST(a_short_dip_is_not_seen);
     RUN_TEST(uvlo_keeps_registers_and_raises_no_line);
     RUN_TEST(nothing_works_without_supply);
