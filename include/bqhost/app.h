@@ -31,8 +31,7 @@ extern "C" {
 #define BQ_APP_BRING_UP_MS 10000u /**< a bring-up that takes longer is reported as failed with BQ_E_TIMEOUT */
 
 typedef struct bq_app_config {
-    uint32_t period_ms; /**< control period, 10..10000; comm_timeout_ms of the pack must be 2 periods or more
-                             */
+    uint32_t period_ms; /**< control period, 10..10000; comm_timeout_ms must be 2 periods or more */
     uint32_t retry_ms;  /**< pause between attempts at bring-up, wake, sleep and self-test, 100..60000; 0 =
                              1000 */
     uint8_t balance_timer_s; /**< safety timer of the monitors' balancing outputs; 0 = they have none or

@@ -161,8 +161,7 @@ typedef struct bq_pack_input {
 
 /** One fault: what happened, where, and why it is still there. Times are values of `now_ms`. */
 typedef struct bq_pack_fault_record {
-    uint32_t count;    /**< times it became active, saturating; 0 = never, then the other fields mean nothing
-                            */
+    uint32_t count;    /**< times it became active, saturating; 0 = never: nothing else has a meaning then */
     uint32_t first_ms; /**< when it became active for the first time */
     uint32_t trip_ms;  /**< when it became active for the last time */
     uint32_t last_ms;  /**< when its cause was last present */
