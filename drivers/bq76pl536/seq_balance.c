@@ -32,7 +32,7 @@ bq_status pl_job_cb_pause(bq76pl536 *d, bq76pl536_frame *f)
             break;
         }
     }
-    d->active = false;
+    d->active = d->transfer != BQ_OK; /* never sent: the next job has to try again */
     SEQ_WAIT(d, f, d->config.balance_settle_ms * 1000ul);
     return BQ_OK;
     SEQ_END;

@@ -154,6 +154,30 @@ static unsigned count_locked(const bq76pl536 *d)
     return count;
 }
 
+static bool any_line_high(const bq76pl536 *d)
+{
+    bool high;
+    if (pl_line(d, BQ_LINE_FAULT, &high) && high) {
+        return true;
+    }
+    return pl_line(d, BQ_LINE_ALERT, &high) && high;
+}
+
+/* A line high that no device explains, seen in two scans so that a flag raised in between is not taken for it (08-09). */
+static bool line_unexplained(bq76pl536 *d)
+{
+    bool explained = d->found < d->config.devices || !any_line_high(d);
+    for (unsigned n = 1; n <= d->found && !explained; n++) {
+        explained = (d->devices[n - 1u].status & (BQ76PL536_DS_FAULT | BQ76PL536_DS_ALERT)) != 0u;
+    }
+    if (explained) {
+        d->unexplained = 0;
+        return false;
+    }
+    d->unexplained = (uint8_t)(d->unexplained < 3u ? d->unexplained + 1u : 3u);
+    return d->unexplained == 2u;
+}
+
 /* What the bursts asked for: service, lock-up recovery, lost devices, the scrub. f->x = 1: hot devices may be
  * tried again. */
 bq_status pl_job_aftercare(bq76pl536 *d, bq76pl536_frame *f)
@@ -190,6 +214,9 @@ bq_status pl_job_aftercare(bq76pl536 *d, bq76pl536_frame *f)
     if (d->found == 0u && d->probes > PL_TRIES) {
         SEQ_TRY(d, f, PL_JOB_BRINGUP, 0, 0, 0);
     }
+    if (line_unexplained(d)) {
+        SEQ_CALL(d, f, PL_JOB_LINES, 0, 0, 0);
+    }
     if (scrub_due(d)) {
         SEQ_CALL(d, f, PL_JOB_ESTABLISH, d->scrub_next, 0, 1);
         if (d->result == BQ_E_VERIFY || d->result == BQ_E_DEFECTIVE) {
@@ -198,15 +225,6 @@ bq_status pl_job_aftercare(bq76pl536 *d, bq76pl536_frame *f)
     }
     return BQ_OK;
     SEQ_END;
-}
-
-static bool any_line_high(const bq76pl536 *d)
-{
-    bool high;
-    if (pl_line(d, BQ_LINE_FAULT, &high) && high) {
-        return true;
-    }
-    return pl_line(d, BQ_LINE_ALERT, &high) && high;
 }
 
 static void begin_picture(bq76pl536 *d)

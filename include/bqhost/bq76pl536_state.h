@@ -57,6 +57,7 @@ typedef struct bq76pl536 {
     uint8_t found;      /* devices 1..found answer */
     uint8_t scrub_next; /* device whose configuration is read back next */
     bool active;        /* outputs may be on: a job must switch them off before it measures */
+    uint8_t unexplained; /* scans in a row with a line high that no device explains */
     uint8_t probes;     /* looks in vain since the last device was lost */
     uint8_t attempt;    /* of address discovery */
     uint8_t failed_at;  /* device at which the last discovery pass ended */

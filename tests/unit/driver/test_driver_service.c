@@ -244,6 +244,48 @@ static void heat_shuts_a_device_down_until_it_has_cooled(void)
     TEST_ASSERT_EQUAL_UINT(0, rig_misuse(&r));
 }
 
+static bool hold_fault_line;
+
+static bq_status held_read(void *ctx, bq_line line, bool *level)
+{
+    const bq_gpio good = hal_sim_gpio(ctx);
+    bq_status st = good.ops->read(ctx, line, level);
+    *level = *level || (line == BQ_LINE_FAULT && hold_fault_line);
+    return st;
+}
+
+/* A line that stays high although every device is clean: polled, reported, not polled again and again.
+ * proves: PL-SEQ-08-09 */
+static void a_line_that_nobody_explains_is_reported_in_service(void)
+{
+    static bq_gpio_ops ops;
+    ops = *hal_sim_gpio(&r.hal).ops;
+    ops.read = held_read;
+    hold_fault_line = false;
+    const bq_gpio gpio = {&ops, &r.hal};
+    const bq_spi spi = hal_sim_spi(&r.hal);
+    const bq_clock clock = hal_sim_clock(&r.hal);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_init(&r.d, &c, &spi, &gpio, &clock, r.devices, 62));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_start(&r));
+    hold_fault_line = true;
+    scan();
+    TEST_ASSERT_FALSE(bq76pl536_diagnose(&r.d)->fault_line_stuck);
+    scan();
+    TEST_ASSERT_TRUE(bq76pl536_diagnose(&r.d)->fault_line_stuck);
+    TEST_ASSERT_FALSE(bq76pl536_diagnose(&r.d)->alert_line_stuck);
+    TEST_ASSERT_EQUAL_UINT(1, bq76pl536_diagnose(&r.d)->line_above);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CHAIN, r.modules[0].faults);
+    uint64_t packets = r.hal.transfers;
+    scan();
+    TEST_ASSERT_EQUAL_UINT(4, r.hal.transfers - packets);
+    hold_fault_line = false;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_self_test(&r.d));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_run(&r, 5));
+    scan();
+    TEST_ASSERT_EQUAL_HEX16(0, r.modules[0].faults);
+    TEST_ASSERT_FALSE(bq76pl536_diagnose(&r.d)->fault_line_stuck);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -258,5 +300,6 @@ int main(void)
     RUN_TEST(an_uncorrectable_eprom_error_ends_as_a_defective_device);
     RUN_TEST(a_corrected_eprom_error_is_reported_and_harmless);
     RUN_TEST(heat_shuts_a_device_down_until_it_has_cooled);
+    RUN_TEST(a_line_that_nobody_explains_is_reported_in_service);
     return UNITY_END();
 }
