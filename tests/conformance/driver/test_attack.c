@@ -300,6 +300,129 @@ static void more_and_fewer_devices_than_configured(void)
     }
 }
 
+static uint32_t chaos_rng;
+
+static uint32_t chance(uint32_t below)
+{
+    chaos_rng = chaos_rng * 1664525u + 1013904223u;
+    return (chaos_rng >> 8) % below;
+}
+
+static void strike(int devices)
+{
+    struct sim_bus_fault *f = sim_pl_bus_fault(&b.pl);
+    int d = 1 + (int)chance((uint32_t)devices);
+    switch (chance(16)) {
+    case 0:
+        sim_pl_set_supply(&b.pl, d, false);
+        break;
+    case 1:
+        sim_pl_set_supply(&b.pl, d, true);
+        break;
+    case 2:
+        f->break_above = d;
+        break;
+    case 3:
+        f->break_above = 0;
+        break;
+    case 4:
+        f->flip_probability = 1e-3;
+        break;
+    case 5:
+        f->flip_probability = 0;
+        break;
+    case 6:
+        b.lose = b.transfers + 1 + chance(12);
+        break;
+    case 7:
+        b.refuse = b.transfers + 1 + chance(12);
+        break;
+    case 8:
+        b.fail_after = b.transfers + 1 + chance(12);
+        break;
+    case 9:
+        bench_raw_write(d, 0x30, 0x3d);
+        break; /* locks up at the next start */
+    case 10:
+        bench_raw_write(d, 0x3c, 0xa5);
+        break;
+    case 11:
+        f->dead = (int)chance(3);
+        break;
+    case 12:
+        sim_pl_set_tdie(&b.pl, d, chance(2) ? 150 : 25);
+        break;
+    case 13:
+        f->short_packets = 1 + chance(2);
+        break;
+    case 14:
+        sim_pl_damage_ram(&b.pl, d, (uint8_t)(0x42 + chance(10)), 0x04);
+        break;
+    default:
+        bench_raw_write(d, 0x31, 0x04);
+        break; /* falls asleep */
+    }
+}
+
+static void heal(int devices)
+{
+    struct sim_bus_fault *f = sim_pl_bus_fault(&b.pl);
+    f->break_above = f->dead = 0;
+    f->flip_probability = 0;
+    f->short_packets = 0;
+    b.lose = b.refuse = b.fail_after = 0;
+    for (int d = 1; d <= devices; d++) {
+        sim_pl_set_supply(&b.pl, d, true);
+        sim_pl_set_tdie(&b.pl, d, 25);
+    }
+    bench_wait_ms(2000);
+}
+
+/* proves: PL-SEQ-13-06, PL-SEQ-13-07, PL-SEQ-05-03, PL-SEQ-06-05, PL-SEQ-10-07 */
+static void many_faults_at_once(void)
+{
+    for (uint32_t seed = 1; seed <= 60; seed++) {
+        chaos_rng = seed * 99991u;
+        bench_up(4, NULL);
+        b.config.use_conv_pin = seed % 3 == 0;
+        sim_pl_bus_fault(&b.pl)->rng = seed;
+        bench_ready_from();
+        note_conversions(4, 0);
+        for (int round = 1; round <= 60; round++) {
+            uint64_t before;
+            world(4, round);
+            if (chance(3) == 0) {
+                strike(4);
+            }
+            bench_wait_ms(chance(4) == 0 ? 300 : 20);
+            before = sim_pl_now(&b.pl);
+            bq_status status = bench_scan();
+            expect_honest(4, round, elapsed_ms(before));
+            if (status == BQ_OK && chance(4) == 0) {
+                bench_balance(1 + (int)chance(4), 1u << chance(6));
+            } else if (status == BQ_E_STATE) {
+                bench_start();
+            }
+        }
+        heal(4);
+        must_recover(4);
+        for (int d = 1; d <= 4; d++) {
+            static const uint8_t want[12] = {0x50, 0,    0x2c, 0x85, 0x15, 0x85,
+                                             0x55, 0x64, 0x11, 0x22, 0x33, 0x44};
+            for (int i = 0; i < 10; i++) { /* the scrub passes every device */
+                bench_wait_ms(600);
+                bench_scan();
+            }
+            for (int r = 0; r < 12; r++) {
+                TEST_ASSERT_EQUAL_HEX8_MESSAGE(want[r], PEEK(d, (uint8_t)(0x40 + r)),
+                                               bench_text("seed %u", seed));
+            }
+            TEST_ASSERT_EQUAL_HEX8(0x7d, PEEK(d, 0x30));
+            TEST_ASSERT_EQUAL_HEX8(0x80 | d, PEEK(d, 0x3b));
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -310,5 +433,6 @@ int main(void)
     RUN_TEST(the_stack_breaks_above_every_device);
     RUN_TEST(a_bus_that_is_dead_from_the_beginning_or_dies);
     RUN_TEST(more_and_fewer_devices_than_configured);
+    RUN_TEST(many_faults_at_once);
     return UNITY_END();
 }
