@@ -49,6 +49,7 @@ static bq_status spi_start(void *ctx, const uint8_t *tx, uint8_t *rx, size_t len
     (void)ctx;
     TEST_ASSERT_TRUE_MESSAGE(len >= 1 && len <= 24, "packet length");
     b.transfers++;
+    b.under_vpp += b.vpp_device != 0 && sim_pl_vpp(&b.pl, b.vpp_device) && tx[1] != 0x3f;
     if (b.refuse != 0 && b.transfers == b.refuse) {
         return BQ_E_BUS;
     }

@@ -47,6 +47,7 @@ typedef struct bench {
     bool vpp_fails;
     int vpp_device; /**< device whose LDOD pins BQ_LINE_VPP feeds */
     uint64_t vpp_since_us, vpp_longest_us;
+    uint32_t under_vpp; /**< packets other than E_EN while the 7 V stood */
 } bench;
 
 extern bench b;
