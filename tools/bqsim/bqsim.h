@@ -11,6 +11,7 @@
 #include "sim_bus_fault.h"
 #include "sim_pl536.h"
 #include "sim_vcd.h"
+#include "sim_x0.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -34,13 +35,16 @@ typedef struct bqsim_flips {
 } bqsim_flips;
 
 /**
- * One session: caller-owned, no other state anywhere. Tests may set `options` before the command `stack` and
- * reach the stack's other doors through `stack`; everything else is private to the interpreter.
+ * One session: caller-owned, no other state anywhere. Tests may set `options` before the command `stack`
+ * (`afe_options` before `afe`) and reach the models' other doors through `stack` and `afe`; everything else is private to the interpreter.
  */
 typedef struct bqsim_session {
     sim_pl_options options; /**< readings and imperfections of the next `stack`; all zero = ideal */
     bool has_stack;
     sim_pl stack;
+    sim_x0_options afe_options; /**< the same for the next `afe` */
+    bool has_afe;
+    sim_x0 afe;
     uint64_t now_ns; /**< simulated time since the session began */
     sim_vcd *vcd;    /**< NULL = no waveform */
     bool vbat_is_sum[SIM_PL_MAX_DEVICES + 1];

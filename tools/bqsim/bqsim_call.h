@@ -40,4 +40,16 @@ bqsim_result bqsim_stack_get_dev(bqsim_call *c, bqsim_text path);
 bqsim_result bqsim_stack_set_pin(bqsim_call *c, bqsim_text path);
 bqsim_result bqsim_stack_get_pin(bqsim_call *c, bqsim_text path);
 
+/* The bq769x0: bqsim_afe.c (life, bus), bqsim_afe_paths.c (inputs and outputs). */
+
+bqsim_result bqsim_afe_create(bqsim_call *c);
+bqsim_result bqsim_afe_i2c(bqsim_call *c);
+bqsim_result bqsim_afe_inject(bqsim_call *c);
+bqsim_result bqsim_afe_peek(bqsim_call *c);
+/** `path` is the text after `afe.`; a value follows on the line of set. */
+bqsim_result bqsim_afe_set(bqsim_call *c, bqsim_text path);
+bqsim_result bqsim_afe_get(bqsim_call *c, bqsim_text path);
+/** True when there is one; otherwise refuses. */
+bool bqsim_afe_present(bqsim_call *c);
+
 #endif

@@ -65,19 +65,6 @@ bool bqsim_last_count(bqsim_call *c, const char *what, uint32_t low, uint32_t hi
     return bqsim_end(c);
 }
 
-/* ---- AFE: the commands exist, the chip family's model does not yet --------------------------- */
-
-static bqsim_result no_afe(bqsim_call *c)
-{
-    return bqsim_refuse(c, "no bq769x0 model in this version", nothing);
-}
-
-static bqsim_result no_afe_path(bqsim_call *c, bqsim_text path)
-{
-    (void)path;
-    return no_afe(c);
-}
-
 /* ---- paths: the part before the first dot chooses the world ---------------------------------- */
 
 typedef struct world {
@@ -91,7 +78,7 @@ static const world *find_world(bqsim_call *c, bqsim_text *path)
     static const world worlds[] = {
         {"dev", bqsim_stack_set_dev, bqsim_stack_get_dev},
         {"pin", bqsim_stack_set_pin, bqsim_stack_get_pin},
-        {"afe", no_afe_path, no_afe_path},
+        {"afe", bqsim_afe_set, bqsim_afe_get},
     };
     bqsim_text whole, first;
 
@@ -138,7 +125,7 @@ static bqsim_result run_peek(bqsim_call *c)
         return bqsim_stack_peek(c, path);
     }
     if (bqsim_is(whole, "afe")) {
-        return no_afe(c);
+        return bqsim_afe_peek(c);
     }
     return bqsim_refuse(c, "unknown chip", whole);
 }
@@ -166,6 +153,9 @@ static bqsim_result run_advance(bqsim_call *c)
     if (c->s->has_stack) {
         sim_pl_advance(&c->s->stack, ns);
     }
+    if (c->s->has_afe) {
+        sim_x0_advance(&c->s->afe, ns);
+    }
     return bqsim_accept(c, NULL);
 }
 
@@ -183,7 +173,7 @@ static bqsim_result run_inject(bqsim_call *c)
         return bqsim_stack_inject(c, &c->s->miso);
     }
     if (bqsim_is(where, "sda")) {
-        return no_afe(c);
+        return bqsim_afe_inject(c);
     }
     return bqsim_refuse(c, "inject takes mosi, miso or sda", where);
 }
@@ -202,14 +192,14 @@ static const struct command {
     bqsim_result (*run)(bqsim_call *c);
 } commands[] = {
     {"stack", bqsim_stack_create},
-    {"afe", no_afe},
+    {"afe", bqsim_afe_create},
     {"advance", run_advance},
     {"set", run_set},
     {"get", run_get},
     {"peek", run_peek},
     {"inject", run_inject},
     {"spi", bqsim_stack_spi},
-    {"i2c", no_afe},
+    {"i2c", bqsim_afe_i2c},
     {"quit", run_quit},
 };
 

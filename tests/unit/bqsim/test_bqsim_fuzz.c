@@ -68,6 +68,15 @@ static const char *const seeds[] = {
     "inject sda 4",
     "i2c S 10 P",
     "afe bq7694003",
+    "set afe.boot 3ms",
+    "set afe.cell.4 4.3",
+    "set afe.sense -0.06",
+    "set afe.alert.ext 1",
+    "set afe.supply off",
+    "get afe.cb",
+    "peek afe 04",
+    "i2c S 10 04 S 11 r n P",
+    "i2c S 10 05 43 2d P",
     "spi 7f 3c a5 57",
     "spi 01 3b 01 02",
     "spi 01 3b 02 0b",
@@ -185,6 +194,7 @@ static bool same_world(void)
            memcmp(&session.stack, &before.stack, sizeof session.stack) == 0 &&
            memcmp(session.vbat_is_sum, before.vbat_is_sum, sizeof session.vbat_is_sum) == 0 &&
            memcmp(session.gpio_level, before.gpio_level, sizeof session.gpio_level) == 0 &&
+           session.has_afe == before.has_afe && memcmp(&session.afe, &before.afe, sizeof session.afe) == 0 &&
            session.mosi.count == before.mosi.count && session.miso.count == before.miso.count;
 }
 

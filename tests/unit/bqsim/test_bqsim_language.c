@@ -337,17 +337,6 @@ static void test_peek(void)
     refused("peek pin.conv 00");
 }
 
-static void test_the_afe_family_says_that_it_is_missing(void)
-{
-    static const char *const lines[] = {"afe bq7694003", "i2c S 10 P",  "set afe.cell.1 3.6",
-                                        "get afe.mode",  "peek afe 00", "inject sda 3"};
-
-    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
-        refused(lines[i]);
-        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reply, "bq769x0"), lines[i]);
-    }
-}
-
 static void test_unknown_commands(void)
 {
     refused("hello");
@@ -393,7 +382,6 @@ int main(void)
     RUN_TEST(test_simulated_time_has_an_end);
     RUN_TEST(test_simulated_time_moves_only_with_advance);
     RUN_TEST(test_peek);
-    RUN_TEST(test_the_afe_family_says_that_it_is_missing);
     RUN_TEST(test_unknown_commands);
     RUN_TEST(test_quit);
     RUN_TEST(test_nul_is_refused_outside_comments);
