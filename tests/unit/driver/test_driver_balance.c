@@ -233,6 +233,25 @@ static void a_lost_pause_is_noticed_and_the_measurement_repeated(void)
     TEST_ASSERT_EQUAL_HEX16(0, r.modules[0].faults);
 }
 
+/* The back-end cannot send the pause: outputs are switched off as soon as it can, nothing measured meanwhile
+ * counts. proves: PL-SEQ-10-04 */
+static void a_pause_that_was_never_sent_is_made_up_for(void)
+{
+    bq_mask_set(r.action.balance, 1);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(&r));
+    rig_sample(&r);
+    uint32_t sequence = r.sample.sequence;
+    r.hal.fail_at = 1;
+    r.hal.fail_count = 6; /* three tries of the pause, three of the start */
+    TEST_ASSERT_EQUAL_INT(BQ_E_BUS, rig_scan(&r));
+    rig_sample(&r);
+    TEST_ASSERT_EQUAL_UINT(sequence, r.sample.sequence);
+    memset(&r.action, 0, sizeof r.action);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(&r));
+    TEST_ASSERT_EQUAL_HEX8(0, sim_pl_cb(&r.pl, 1));
+    TEST_ASSERT_EQUAL_HEX8(0, sim_pl_peek(&r.pl, 1, 0x32));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -245,5 +264,6 @@ int main(void)
     RUN_TEST(cells_that_do_not_exist_have_no_output);
     RUN_TEST(outputs_that_do_not_follow_are_reported);
     RUN_TEST(a_lost_pause_is_noticed_and_the_measurement_repeated);
+    RUN_TEST(a_pause_that_was_never_sent_is_made_up_for);
     return UNITY_END();
 }

@@ -244,6 +244,24 @@ static void heat_shuts_a_device_down_until_it_has_cooled(void)
     TEST_ASSERT_EQUAL_UINT(0, rig_misuse(&r));
 }
 
+/* proves: PL-SEQ-03-02, PL-SEQ-15-02, PL-ECC-05 */
+static void a_defective_eprom_is_found_at_bring_up(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, sim_pl_damage_otp(&r.pl, 2, 0x45, 0x03));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_start(&r));
+    scan();
+    TEST_ASSERT_EQUAL_HEX8(0, r.cells[6].quality & BQ_Q_VALID); /* never used, not even once */
+    TEST_ASSERT_TRUE((r.modules[1].faults & BQ_F_DEFECTIVE) != 0);
+    rig_advance_ms(&r, 100);
+    scan();
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_CHIP, r.cells[6].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.cells[0].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.cells[12].quality);
+    uint64_t packets = r.hal.transfers; /* and it costs one look at its flags, no more resets */
+    scan();
+    TEST_ASSERT_TRUE(r.hal.transfers - packets <= 5);
+}
+
 static bool hold_fault_line;
 
 static bq_status held_read(void *ctx, bq_line line, bool *level)
@@ -300,6 +318,7 @@ int main(void)
     RUN_TEST(an_uncorrectable_eprom_error_ends_as_a_defective_device);
     RUN_TEST(a_corrected_eprom_error_is_reported_and_harmless);
     RUN_TEST(heat_shuts_a_device_down_until_it_has_cooled);
+    RUN_TEST(a_defective_eprom_is_found_at_bring_up);
     RUN_TEST(a_line_that_nobody_explains_is_reported_in_service);
     return UNITY_END();
 }
