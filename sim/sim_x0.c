@@ -77,7 +77,8 @@ void x0_defaults(sim_x0 *s, uint8_t ctrl1)
     s->scans = 0;
     s->t_valid = X0_NEVER;
     s->ship_armed = s->nibble_shift = s->nibble_armed = false;
-    s->stat_seen = 0;
+    s->stat_seen = s->raised = s->short_groups = 0;
+    s->due = 0;
 }
 
 void x0_enter_ship(sim_x0 *s)
@@ -85,22 +86,29 @@ void x0_enter_ship(sim_x0 *s)
     x0_defaults(s, 0x00);
     s->mode = SIM_X0_SHIP;
     s->zero_boot = false;
+    s->t_ship = s->now;
     s->t_i2c = s->t_normal = X0_NEVER;
+}
+
+/* X0-ADC-14 */
+uint64_t x0_first_scan(const sim_x0 *s)
+{
+    static const uint64_t first_ms[] = {250, 400, 800};
+    return first_ms[s->part->cells / 5 - 1] * X0_MS;
 }
 
 void x0_enter_normal(sim_x0 *s)
 {
-    static const uint64_t first[] = {250, 400, 800}; /* X0-ADC-14 */
     x0_defaults(s, X0_ADC_EN);
     s->mode = SIM_X0_NORMAL;
     s->t_normal = X0_NEVER;
-    s->t_scan = s->t_valid = s->now + first[s->part->cells / 5 - 1] * X0_MS;
+    s->t_scan = s->t_valid = s->now + x0_first_scan(s);
     if (s->options.field_zero_boot) {
         s->zero_boot = true;
         s->options.field_zero_boot = false;
     }
     x0_overcurrent(s);
-    x0_alert_check(s);
+    x0_alert_check(s, true);
 }
 
 int sim_x0_init(sim_x0 *s, const sim_x0_part *part, const sim_x0_options *options)
@@ -137,14 +145,17 @@ int sim_x0_set_supply(sim_x0 *s, bool on)
     x0_enter_ship(s); /* X0-MODE-02: back in SHIP, never in NORMAL */
     s->mode = on ? SIM_X0_SHIP : SIM_X0_OFF;
     s->i2c.state = 0;
+    x0_record_pins(s);
     return 0;
 }
 
-/* X0-MODE-05, X0-MODE-06: times count from the rise. A pulse that is just over may have outlasted them. */
+/* X0-MODE-05, X0-MODE-06: times count from the rise. A pulse that is just over may have outlasted them; one
+ * that rose before SHIP was entered is no pulse (X0-AMB-75). */
 static int boot_from(sim_x0 *s, uint64_t rise, uint64_t pulse_ns)
 {
-    if (s->mode == SIM_X0_SHIP && pulse_ns >= 2 * X0_MS) {
+    if (s->mode == SIM_X0_SHIP && rise >= s->t_ship && pulse_ns >= 2 * X0_MS) {
         s->mode = SIM_X0_BOOT;
+        s->due = 0;
         s->t_normal = rise + 10 * X0_MS > s->now ? rise + 10 * X0_MS : s->now;
         s->t_i2c = s->options.amb69_i2c_at_boot ? s->t_normal : rise + 1 * X0_MS;
     }
@@ -176,9 +187,14 @@ uint64_t sim_x0_next_event(const sim_x0 *s)
     return t == X0_NEVER ? X0_NEVER : t - s->now;
 }
 
+/* Whatever can move the next event sets `due` to 0, so that calls between events cost nothing. */
 void sim_x0_advance(sim_x0 *s, uint64_t ns)
 {
     uint64_t end = s->now + ns;
+    if (s->due > end) {
+        s->now = end;
+        return;
+    }
     for (uint64_t t = next_time(s); t <= end; t = next_time(s)) {
         s->now = t;
         if (s->t_normal == t) {
@@ -190,7 +206,9 @@ void sim_x0_advance(sim_x0 *s, uint64_t ns)
         } else {
             x0_publish(s);
         }
+        x0_record_pins(s);
     }
+    s->due = next_time(s);
     s->now = end;
 }
 
@@ -231,6 +249,7 @@ int sim_x0_set_sense(sim_x0 *s, double volts)
     x0_cc_integrate(s);
     s->sense = volts;
     x0_overcurrent(s);
+    x0_record_pins(s);
     return 0;
 }
 
@@ -245,8 +264,10 @@ int sim_x0_set_chgpin(sim_x0 *s, double volts)
 
 int sim_x0_set_alert_ext(sim_x0 *s, bool level)
 {
+    bool rising = level && !s->alert_ext;
     s->alert_ext = level;
-    x0_alert_check(s);
+    x0_alert_check(s, rising);
+    x0_record_pins(s);
     return 0;
 }
 
@@ -274,6 +295,7 @@ int sim_x0_strike_xready(sim_x0 *s)
         return -1;
     }
     x0_raise(s, X0_XREADY);
+    x0_record_pins(s);
     return 0;
 }
 

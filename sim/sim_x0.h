@@ -39,21 +39,36 @@ typedef struct sim_x0_options {
     uint32_t seed;       /**< of everything random below */
     double noise_uv_rms; /**< of the cell channels in 50 ms windows; doubled in 12.5 ms windows (X0-SCH-03) */
     double cc_noise_uv_rms;    /**< of the coulomb counter */
-    bool amb42_full_delay;     /**< X0-AMB-42: a cleared OV or UV comes back after the whole delay, not at the
-                                  next scan */
-    bool amb50_write_sticks;   /**< X0-AMB-50: a FET bit may be set while its fault bit is set */
-    bool amb69_i2c_at_boot;    /**< X0-AMB-69: I2C answers only when the boot is complete */
-    bool amb88_nibble_reads_8; /**< X0-AMB-88: PROTECT3 bits 3..0 come up as 1000 */
-    bool field_zero_boot;      /**< field: after the next boot everything reads zero until SHIP */
-    bool field_nibble_offset;  /**< field: PROTECT3's low nibble written to 0 over another value and then read
-                                  shifts the current */
-    bool field_alert_high;     /**< field: ALERT is high although SYS_STAT reads 0 */
+    bool amb10_bat_rounds;      /**< X0-AMB-10: BAT is rounded to the nearest code, not down */
+    bool amb16_like_boot;       /**< X0-AMB-16: after ADC_EN 0 -> 1 the registers read 0 until a first scan as
+                                   long as after boot */
+    bool amb25_ready_ignored;   /**< X0-AMB-25: a one-shot starts although CC_READY is set */
+    bool amb26_finishes;        /**< X0-AMB-26: CC_EN 0 lets the running window finish, with CC_READY */
+    bool amb42_full_delay;      /**< X0-AMB-42: a cleared OV or UV comes back after the whole delay, not at the
+                                   next scan */
+    bool amb43_at_once;         /**< X0-AMB-43: a cleared OCD or SCD comes back at once */
+    bool amb50_write_sticks;    /**< X0-AMB-50: a FET bit may be set while its fault bit is set */
+    bool amb53_edge;            /**< X0-AMB-53: only a rising outside level sets OVRD_ALERT */
+    bool amb63_faults_clear_cb; /**< X0-AMB-63: every fault clears the CELLBAL registers */
+    bool amb65_config_lost;     /**< X0-AMB-65: XREADY loads the defaults of 0x06..0x0b */
+    bool amb66_upper_zero;      /**< X0-AMB-66: while XREADY is set the upper groups read 0 V */
+    bool amb69_i2c_at_boot;     /**< X0-AMB-69: I2C answers only when the boot is complete */
+    bool amb71_needs_00;        /**< X0-AMB-71: the SHIP pattern arms only after 00 */
+    bool amb72_shut_reads_0;    /**< X0-AMB-72: SHUT_A and SHUT_B read back 0 */
+    bool amb83_pointer_lost;    /**< X0-AMB-83: a STOP sets the register pointer to 0 */
+    bool amb86_nack;            /**< X0-AMB-86: a write to a read-only register is not acknowledged */
+    bool amb88_nibble_reads_8;  /**< X0-AMB-88: PROTECT3 bits 3..0 come up as 1000 */
+    bool field_zero_boot;       /**< field: after the next boot everything reads zero until SHIP */
+    bool field_nibble_offset;   /**< field: PROTECT3's low nibble written to 0 over another value and then read
+                                   shifts the current */
+    bool field_alert_high;      /**< field: ALERT is high although SYS_STAT reads 0 */
 } sim_x0_options;
 
 /** Faults injected on the I2C bus, the one point where they touch it. All zero = none. */
 typedef struct sim_x0_bus_fault {
     double flip_probability; /**< each data or address bit, either direction */
-    int stuck_clocks;        /**< SDA is held low until so many clocks were given; -1 = for ever; 0 = free */
+    int stuck_clocks; /**< SDA is held low until so many clocks were given; -1 = for ever; 0 = free. A transfer
+                         tried meanwhile goes as with dead = 1. */
     int dead; /**< 1 = the wires read 00 (every byte seems acknowledged), 2 = they read ff; the device hears
                  nothing */
     uint32_t nack_bytes;   /**< so many bytes from now are not acknowledged and not taken */
@@ -97,8 +112,12 @@ typedef struct sim_x0 {
     double cc_sum;                 /**< volt nanoseconds in this window */
     uint64_t ov_since, uv_since;   /**< first bad publication; UINT64_MAX = none */
     uint64_t ocd_since, scd_since; /**< since when over the threshold; UINT64_MAX = not */
+    uint64_t due;                  /**< next internal event as last looked up; 0 = look it up again */
+    uint64_t t_ship;               /**< when SHIP was entered; an earlier rise of TS1 boots nothing */
+    uint64_t raised_at;            /**< when the SYS_STAT bits `raised` became 1 (X0-BIT-08) */
+    uint8_t raised, stat_seen;     /**< stat_seen: SYS_STAT bits the host has read as 1 */
+    uint8_t short_groups;          /**< groups that this scan converts in 12.5 ms windows (X0-AMB-101) */
     bool ship_armed, frozen, zero_boot, nibble_shift, nibble_armed;
-    uint8_t stat_seen; /**< SYS_STAT bits the host has read as 1 */
     double cell[SIM_X0_CELLS], ts_ohm[SIM_X0_SENSORS];
     double tdie, sense, chgpin;
     bool alert_ext, supply;
@@ -107,6 +126,9 @@ typedef struct sim_x0 {
     sim_x0_i2c i2c;
     sim_x0_bus_fault bus;
     uint32_t lost_cc; /**< results replaced before the host cleared CC_READY */
+    struct sim_vcd *vcd;
+    int vcd_signal[5];
+    uint64_t vcd_time; /**< how far the waveform got */
 } sim_x0;
 
 /** Looks a part up by its base name, for example "bq7694003"; NULL for any other name (X0-VAR-21). */
@@ -174,5 +196,12 @@ uint16_t sim_x0_cb(const sim_x0 *s);
 uint16_t sim_x0_cb_conducting(const sim_x0 *s);
 /** A register's value without any side effect; 0 for addresses that hold nothing. */
 uint8_t sim_x0_peek(const sim_x0 *s, uint8_t reg);
+
+/* ---- waveform: see sim_vcd.h ------------------------------------------------------------------ */
+
+struct sim_vcd;
+/** Records SCL, SDA, ALERT, CHG and DSG from now on; NULL stops. Bytes take 100 kHz bit times in the waveform
+ * although they take no simulated time; what follows at the same instant is drawn behind them. */
+void sim_x0_record(sim_x0 *s, struct sim_vcd *vcd);
 
 #endif

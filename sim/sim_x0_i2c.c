@@ -50,6 +50,12 @@ static uint8_t on_the_wire(sim_x0 *s, uint8_t byte)
     return byte;
 }
 
+/* How the wires read whatever is sent: 0 = alive, 1 = low, 2 = high. */
+static int dead(const sim_x0 *s)
+{
+    return s->bus.dead != 0 ? s->bus.dead : s->bus.stuck_clocks != 0;
+}
+
 sim_x0_bus_fault *sim_x0_bus(sim_x0 *s)
 {
     return &s->bus;
@@ -72,7 +78,7 @@ static bool answers(const sim_x0 *s)
     return s->mode == SIM_X0_NORMAL || (s->mode == SIM_X0_BOOT && s->now >= s->t_i2c);
 }
 
-void sim_x0_i2c_start(sim_x0 *s)
+void x0_bus_start(sim_x0 *s)
 {
     sim_x0_i2c *c = &s->i2c;
     if (!c->in_transaction) {
@@ -85,7 +91,7 @@ void sim_x0_i2c_start(sim_x0 *s)
     c->crc_next = false;
 }
 
-void sim_x0_i2c_stop(sim_x0 *s)
+void x0_bus_stop(sim_x0 *s)
 {
     sim_x0_i2c *c = &s->i2c;
     if (c->in_transaction && c->flip_bit != 0) {
@@ -94,6 +100,9 @@ void sim_x0_i2c_stop(sim_x0 *s)
     c->state = IDLE;
     c->in_transaction = false;
     c->low_frozen = false;
+    if (s->options.amb83_pointer_lost) {
+        c->pointer = 0;
+    }
 }
 
 static bool take_address(sim_x0 *s, uint8_t byte)
@@ -108,6 +117,16 @@ static bool take_address(sim_x0 *s, uint8_t byte)
     return true;
 }
 
+static bool take_byte(sim_x0 *s, uint8_t byte)
+{
+    sim_x0_i2c *c = &s->i2c;
+    if (!x0_write(s, c->pointer++, byte)) {
+        c->state = DEAF;
+        return false;
+    }
+    return true;
+}
+
 static bool take_crc(sim_x0 *s, uint8_t byte)
 {
     sim_x0_i2c *c = &s->i2c;
@@ -117,8 +136,7 @@ static bool take_crc(sim_x0 *s, uint8_t byte)
     }
     c->crc = 0; /* X0-I2C-13 */
     c->state = DATA;
-    x0_write(s, c->pointer++, c->data);
-    return true;
+    return take_byte(s, c->data);
 }
 
 static bool take_data(sim_x0 *s, uint8_t byte)
@@ -128,18 +146,17 @@ static bool take_data(sim_x0 *s, uint8_t byte)
         c->data = byte;
         c->crc = crc8(c->crc, byte);
         c->state = DATA_CRC;
-    } else {
-        x0_write(s, c->pointer++, byte);
+        return true;
     }
-    return true;
+    return take_byte(s, byte);
 }
 
-bool sim_x0_i2c_write(sim_x0 *s, uint8_t byte)
+bool x0_bus_write(sim_x0 *s, uint8_t byte)
 {
     sim_x0_i2c *c = &s->i2c;
     uint8_t seen = on_the_wire(s, byte);
-    if (s->bus.dead != 0) {
-        return s->bus.dead == 1;
+    if (dead(s) != 0) {
+        return dead(s) == 1;
     }
     if (s->bus.nack_bytes > 0) {
         s->bus.nack_bytes--;
@@ -198,12 +215,14 @@ static uint8_t next_sent(sim_x0 *s)
     return byte;
 }
 
-uint8_t sim_x0_i2c_read(sim_x0 *s, bool ack)
+uint8_t x0_bus_read(sim_x0 *s, bool ack)
 {
     sim_x0_i2c *c = &s->i2c;
     uint8_t byte = 0xff;
-    if (s->bus.dead != 0) {
-        return s->bus.dead == 1 ? 0x00 : 0xff;
+    if (dead(s) != 0) {
+        s->bus.bytes++;
+        s->stat_seen = 0xff; /* the host may have taken it for SYS_STAT */
+        return dead(s) == 1 ? 0x00 : 0xff;
     }
     if (c->state == SEND && answers(s)) {
         byte = next_sent(s);
@@ -212,6 +231,34 @@ uint8_t sim_x0_i2c_read(sim_x0 *s, bool ack)
         }
     }
     return on_the_wire(s, byte);
+}
+
+/* ---- the public door: with a trace in the waveform ---- */
+
+void sim_x0_i2c_start(sim_x0 *s)
+{
+    x0_record_start(s);
+    x0_bus_start(s);
+}
+
+bool sim_x0_i2c_write(sim_x0 *s, uint8_t byte)
+{
+    bool ack = x0_bus_write(s, byte);
+    x0_record_byte(s, byte, ack);
+    return ack;
+}
+
+uint8_t sim_x0_i2c_read(sim_x0 *s, bool ack)
+{
+    uint8_t byte = x0_bus_read(s, ack);
+    x0_record_byte(s, byte, ack);
+    return byte;
+}
+
+void sim_x0_i2c_stop(sim_x0 *s)
+{
+    x0_bus_stop(s);
+    x0_record_stop(s);
 }
 
 /* ---- line levels ---- */
@@ -246,7 +293,7 @@ static void falling_clock(sim_x0 *s)
         }
     } else if (c->bits == 8) {
         c->ack_phase = true;
-        c->drive_low = !sending && sim_x0_i2c_write(s, c->shift);
+        c->drive_low = !sending && x0_bus_write(s, c->shift);
         return;
     }
     if (c->selected_read && !c->ack_phase) {
@@ -259,10 +306,10 @@ bool sim_x0_lines(sim_x0 *s, bool scl, bool sda)
     sim_x0_i2c *c = &s->i2c;
     if (c->scl && scl && c->sda != sda && !c->drive_low) {
         if (!sda) {
-            sim_x0_i2c_start(s);
+            x0_bus_start(s);
             c->active = true;
         } else {
-            sim_x0_i2c_stop(s);
+            x0_bus_stop(s);
             c->active = false;
         }
         c->bits = 0;
@@ -272,7 +319,11 @@ bool sim_x0_lines(sim_x0 *s, bool scl, bool sda)
     } else if (c->active && c->scl && !scl && (c->bits != 0 || c->ack_phase)) {
         falling_clock(s);
     }
+    if (!c->scl && scl) {
+        sim_x0_recovery_clock(s);
+    }
     c->scl = scl;
     c->sda = sda;
-    return sda && !c->drive_low;
+    x0_record_lines(s, scl, sda && !c->drive_low && dead(s) != 1);
+    return sda && !c->drive_low && dead(s) != 1;
 }

@@ -54,9 +54,12 @@ void x0_misuse(sim_x0 *s, const char *id, const char *text);
 void x0_defaults(sim_x0 *s, uint8_t ctrl1);
 void x0_enter_ship(sim_x0 *s);
 void x0_enter_normal(sim_x0 *s);
+/** From the start of the converter to the first results, ns. */
+uint64_t x0_first_scan(const sim_x0 *s);
 /** Sets SYS_STAT bits and carries out the FET reactions of Table 7-1. */
 void x0_raise(sim_x0 *s, uint8_t bits);
-void x0_alert_check(sim_x0 *s);
+/** The outside level on ALERT; `rising` = it just came. */
+void x0_alert_check(sim_x0 *s, bool rising);
 void x0_publish(sim_x0 *s);
 void x0_converter(sim_x0 *s, bool on);
 void x0_overcurrent(sim_x0 *s);
@@ -65,10 +68,22 @@ void x0_cc_integrate(sim_x0 *s);
 void x0_cc_result(sim_x0 *s);
 void x0_cc_control(sim_x0 *s, uint8_t before, uint8_t wanted);
 uint8_t x0_read(sim_x0 *s, uint8_t reg);
-void x0_write(sim_x0 *s, uint8_t reg, uint8_t value);
-void x0_judge_balance(sim_x0 *s);
+/** Returns whether the byte is acknowledged. */
+bool x0_write(sim_x0 *s, uint8_t reg, uint8_t value);
+void x0_judge_balance(sim_x0 *s, int group);
 void x0_judge_read(sim_x0 *s, uint8_t reg, bool high_before);
 double x0_uniform(sim_x0 *s);
 double x0_gauss(sim_x0 *s);
+/* bus events without their trace in the waveform */
+void x0_bus_start(sim_x0 *s);
+bool x0_bus_write(sim_x0 *s, uint8_t byte);
+uint8_t x0_bus_read(sim_x0 *s, bool ack);
+void x0_bus_stop(sim_x0 *s);
+/* waveform; all do nothing while none is recorded */
+void x0_record_pins(sim_x0 *s);
+void x0_record_lines(sim_x0 *s, bool scl, bool sda);
+void x0_record_start(sim_x0 *s);
+void x0_record_byte(sim_x0 *s, uint8_t byte, bool ack);
+void x0_record_stop(sim_x0 *s);
 
 #endif

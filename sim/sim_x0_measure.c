@@ -3,6 +3,7 @@
  * counter (X0-CC). */
 #include "sim_x0_internal.h"
 #include <math.h>
+#include <string.h>
 
 #define UV_MINQUAL 0x0518u
 
@@ -21,8 +22,11 @@ static void store(sim_x0 *s, int hi, unsigned code)
 static unsigned cell_code(sim_x0 *s, int input)
 {
     double volts = s->cell[input];
+    if (s->options.amb66_upper_zero && input >= 5 && (s->reg[X0_SYS_STAT] & X0_XREADY) != 0) {
+        volts = 0.0;
+    }
     if (s->options.noise_uv_rms > 0.0) {
-        bool short_window = s->reg[X0_CELLBAL1 + input / 5] != 0; /* X0-SCH-03 */
+        bool short_window = ((unsigned)s->short_groups >> (input / 5) & 1u) != 0; /* X0-SCH-03 */
         volts += x0_gauss(s) * s->options.noise_uv_rms * 1e-6 * (short_window ? 2.0 : 1.0);
     }
     return code_of(volts - s->offset_mv * 1e-3, s->gain_uv, 16383.0); /* X0-ADC-07 */
@@ -60,6 +64,15 @@ static void judge_limit(sim_x0 *s, bool bad, uint64_t delay, uint64_t *since, ui
     }
 }
 
+/* A scan that begins now converts a balancing group in short windows (X0-SCH-03, X0-AMB-101). */
+static void choose_windows(sim_x0 *s)
+{
+    s->short_groups = 0;
+    for (unsigned g = 0; g < 3u; g++) {
+        s->short_groups |= (uint8_t)(s->reg[X0_CELLBAL1 + (int)g] != 0 ? 1u << g : 0u);
+    }
+}
+
 void x0_publish(sim_x0 *s)
 {
     static const uint8_t ov_s[4] = {1, 2, 4, 8}, uv_s[4] = {1, 4, 8, 16};
@@ -68,6 +81,7 @@ void x0_publish(sim_x0 *s)
     unsigned sum = 0;
     bool over = false, under = false;
     s->t_scan = s->now + X0_SCAN;
+    s->due = 0;
     if (s->frozen || s->zero_boot) {
         return;
     }
@@ -78,13 +92,14 @@ void x0_publish(sim_x0 *s)
         over = over || code > ov_code;
         under = under || (code < uv_code && code >= UV_MINQUAL);
     }
-    store(s, X0_BAT_HI, sum / 4u); /* X0-BAT-03 */
-    if (s->scans % 8u == 0) {      /* X0-SCH-07 */
+    store(s, X0_BAT_HI, (sum + (s->options.amb10_bat_rounds ? 2u : 0u)) / 4u); /* X0-BAT-03 */
+    if (s->scans % 8u == 0) {                                                  /* X0-SCH-07 */
         publish_temperatures(s);
     }
     s->scans++;
     judge_limit(s, over, delay_s(s, 4, ov_s), &s->ov_since, X0_OV);
     judge_limit(s, under, delay_s(s, 6, uv_s), &s->uv_since, X0_UV);
+    choose_windows(s);
 }
 
 /* ADC_EN changed (X0-AMB-16) */
@@ -92,7 +107,16 @@ void x0_converter(sim_x0 *s, bool on)
 {
     s->ov_since = s->uv_since = X0_NEVER;
     s->scans = 0;
-    s->t_scan = on ? s->now + X0_SCAN : X0_NEVER;
+    s->t_scan = on ? s->now + (s->options.amb16_like_boot ? x0_first_scan(s) : X0_SCAN) : X0_NEVER;
+    s->due = 0;
+    if (on && s->options.amb16_like_boot) {
+        memset(&s->reg[X0_VC1_HI], 0, X0_CC_HI - X0_VC1_HI);
+        s->t_valid = s->t_scan;
+    }
+    if (s->now < s->t_valid) { /* nothing was published since the boot */
+        s->t_valid = s->t_scan;
+    }
+    choose_windows(s);
 }
 
 /* ---- coulomb counter ---- */
@@ -110,6 +134,7 @@ static void cc_begin(sim_x0 *s)
     s->cc_sum = 0.0;
     s->t_cc_mark = s->now;
     s->t_cc_end = s->now + X0_SCAN;
+    s->due = 0;
 }
 
 void x0_cc_result(sim_x0 *s)
@@ -133,6 +158,7 @@ void x0_cc_result(sim_x0 *s)
         cc_begin(s);
     } else {
         s->t_cc_end = X0_NEVER;
+        s->due = 0;
         s->reg[X0_SYS_CTRL2] &= (uint8_t)~X0_CC_ONESHOT;
     }
     x0_raise(s, X0_CC_READY);
@@ -151,11 +177,13 @@ void x0_cc_control(sim_x0 *s, uint8_t before, uint8_t wanted)
         }
         return;
     }
-    if (was_on || (was_shot && !shot)) {
+    if ((was_on && !s->options.amb26_finishes) || (was_shot && !shot)) {
         s->t_cc_end = X0_NEVER;
+        s->due = 0;
     }
     if (shot && !was_shot) {
-        if (was_on || (s->reg[X0_SYS_STAT] & X0_CC_READY) != 0) {
+        bool ready = (s->reg[X0_SYS_STAT] & X0_CC_READY) != 0 && !s->options.amb25_ready_ignored;
+        if (was_on || ready) {
             s->reg[X0_SYS_CTRL2] &= (uint8_t)~X0_CC_ONESHOT;
         } else {
             cc_begin(s);

@@ -33,7 +33,8 @@ uint8_t sim_x0_peek(const sim_x0 *s, uint8_t reg)
     switch (reg) {
     case X0_SYS_CTRL1: {
         bool load = s->mode == SIM_X0_NORMAL && !sim_x0_chg(s) && s->chgpin > 0.7; /* X0-LOAD-01 */
-        return (uint8_t)(s->reg[reg] | (load ? 0x80u : 0u));
+        uint8_t shown = s->options.amb72_shut_reads_0 ? s->reg[reg] & 0xfcu : s->reg[reg];
+        return (uint8_t)(shown | (load ? 0x80u : 0u));
     }
     case X0_GAIN1:
         return (uint8_t)(((unsigned)gain_code(s) >> 1 & 0x0cu) | (s->rsvd50 & 0xf3u));
@@ -63,7 +64,7 @@ uint8_t x0_read(sim_x0 *s, uint8_t reg)
 {
     uint8_t value = sim_x0_peek(s, reg);
     if (reg == X0_SYS_STAT) {
-        s->stat_seen |= value;
+        s->stat_seen = s->i2c.damaged ? 0xff : value; /* what a disturbed host saw is unknown */
     }
     if (reg == X0_PROTECT3 && s->options.field_nibble_offset && s->nibble_armed) {
         s->nibble_shift = true;
@@ -73,16 +74,17 @@ uint8_t x0_read(sim_x0 *s, uint8_t reg)
 
 static void write_stat(sim_x0 *s, uint8_t value)
 {
-    uint8_t clear = value & 0xbfu & s->reg[X0_SYS_STAT];
+    uint8_t now_set = s->raised_at == s->now ? (uint8_t)(s->raised & ~s->stat_seen) : 0; /* X0-BIT-08 */
+    uint8_t clear = (uint8_t)(value & 0xbfu & s->reg[X0_SYS_STAT] & ~now_set);
     if ((value & 0xbfu & ~s->stat_seen) != 0) {
         x0_misuse(s, "X0-BIT-09", "status bit cleared that was not read as set");
     }
     s->reg[X0_SYS_STAT] &= (uint8_t)~clear;
     s->stat_seen &= (uint8_t)~value;
-    if ((clear & X0_OCD) != 0) {
+    if ((clear & X0_OCD) != 0 && !s->options.amb43_at_once) {
         s->ocd_since = X0_NEVER; /* X0-AMB-43: the whole delay again */
     }
-    if ((clear & X0_SCD) != 0) {
+    if ((clear & X0_SCD) != 0 && !s->options.amb43_at_once) {
         s->scd_since = X0_NEVER;
     }
     if (s->options.amb42_full_delay) {
@@ -90,7 +92,7 @@ static void write_stat(sim_x0 *s, uint8_t value)
         s->uv_since = (clear & X0_UV) != 0 ? X0_NEVER : s->uv_since;
     }
     x0_overcurrent(s);
-    x0_alert_check(s);
+    x0_alert_check(s, false);
 }
 
 static void write_ctrl1(sim_x0 *s, uint8_t value)
@@ -98,7 +100,8 @@ static void write_ctrl1(sim_x0 *s, uint8_t value)
     uint8_t before = s->reg[X0_SYS_CTRL1], pattern = value & 3u;
     bool armed = s->ship_armed;
     s->reg[X0_SYS_CTRL1] = value & 0x1fu;
-    s->ship_armed = pattern == 1u && (before & 3u) != 1u; /* X0-MODE-11 */
+    s->ship_armed = pattern == 1u && (s->options.amb71_needs_00 ? (before & 3u) == 0u
+                                                                : (before & 3u) != 1u); /* X0-MODE-11 */
     if (armed && pattern == 2u) {
         x0_enter_ship(s);
         return;
@@ -140,21 +143,18 @@ static void judge_write(sim_x0 *s, uint8_t reg, uint8_t value)
     } else if (s->part->cells < row[reg].min_cells) {
         x0_misuse(s, "X0-AMB-85", "write to a register this size does not have");
     } else {
-        uint8_t reserved = row[reg].reserved;
-        if (reg == X0_PROTECT3) {
-            reserved = s->options.amb88_nibble_reads_8 ? 0x07 : 0x0f;
-        }
-        if ((value & reserved) != 0) {
-            x0_misuse(s, row[reg].id, "reserved bit written as 1");
+        uint8_t wanted = reg == X0_PROTECT3 && s->options.amb88_nibble_reads_8 ? 0x08 : 0x00;
+        if ((value & row[reg].reserved) != wanted) {
+            x0_misuse(s, row[reg].id, "reserved bits not written as they come up");
         }
     }
 }
 
-void x0_write(sim_x0 *s, uint8_t reg, uint8_t value)
+bool x0_write(sim_x0 *s, uint8_t reg, uint8_t value)
 {
     if (s->mode == SIM_X0_BOOT) {
         x0_misuse(s, "X0-MODE-09", "write before the boot is complete is lost");
-        return;
+        return true;
     }
     judge_write(s, reg, value);
     if (reg != X0_SYS_CTRL1) {
@@ -162,7 +162,7 @@ void x0_write(sim_x0 *s, uint8_t reg, uint8_t value)
     }
     if (reg >= 0x0c || s->part->cells < row[reg].min_cells || s->zero_boot) {
         if (!(reg == X0_SYS_CTRL1 && s->zero_boot)) {
-            return;
+            return reg < 0x0c || !s->options.amb86_nack;
         }
     }
     switch (reg) {
@@ -181,10 +181,11 @@ void x0_write(sim_x0 *s, uint8_t reg, uint8_t value)
     default:
         s->reg[reg] = value & row[reg].keep;
         if (reg >= X0_CELLBAL1 && reg <= X0_CELLBAL3) {
-            x0_judge_balance(s);
+            x0_judge_balance(s, reg - X0_CELLBAL1);
         } else if (reg == X0_PROTECT1 || reg == X0_PROTECT2) {
             x0_overcurrent(s);
         }
         break;
     }
+    return true;
 }
