@@ -233,8 +233,8 @@ static void a_lost_pause_is_noticed_and_the_measurement_repeated(void)
     TEST_ASSERT_EQUAL_HEX16(0, r.modules[0].faults);
 }
 
-/* The back-end cannot send the pause: outputs are switched off as soon as it can, nothing measured meanwhile
- * counts. proves: PL-SEQ-10-04 */
+/* The back-end cannot send the pause: outputs are off as soon as it can.
+ * proves: PL-SEQ-10-04 */
 static void a_pause_that_was_never_sent_is_made_up_for(void)
 {
     bq_mask_set(r.action.balance, 1);
