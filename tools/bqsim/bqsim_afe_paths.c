@@ -1,23 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Inputs and outputs of the bq769x0: one table row per path. */
 #include "bqsim_call.h"
-#include <math.h>
-#include <stdio.h>
-
-typedef enum notation {
-    NUMBER, /* decimal number */
-    VOLTS,  /* the same, printed with at least millivolts */
-    WHOLE,  /* whole decimal number */
-    LEVEL,  /* 0 or 1 */
-    SWITCH, /* on or off */
-    WORD16, /* four hex digits */
-    TIME,   /* a time with its unit; write only */
-    MODE    /* name of a mode */
-} notation;
+#include "bqsim_value.h"
 
 typedef struct item {
     const char *name;
-    notation as;
+    bqsim_notation as;
     int index_per_group; /* 0 = no index; else indices 1..this times the groups of the part */
     double low, high;
     int (*set)(sim_x0 *a, int index, double value);
@@ -177,24 +165,26 @@ static double get_mode(const sim_x0 *a, int i)
     return (double)a->mode;
 }
 
+static const char *const mode[] = {"off", "ship", "boot", "normal"};
+
 static const item items[] = {
-    {"cell", VOLTS, 5, -100.0, 100.0, set_cell, get_cell},
-    {"ts", NUMBER, 1, 0.0, 1e9, set_ts, get_ts},
-    {"tdie", NUMBER, 0, -273.15, 1000.0, set_tdie, get_tdie},
-    {"sense", NUMBER, 0, -10.0, 10.0, set_sense, get_sense},
-    {"chgpin", NUMBER, 0, -100.0, 100.0, set_chgpin, get_chgpin},
-    {"gain", WHOLE, 0, 365.0, 396.0, set_gain, get_gain},
-    {"offset", WHOLE, 0, -128.0, 127.0, set_offset, get_offset},
-    {"supply", SWITCH, 0, 0.0, 1.0, set_supply, get_supply},
-    {"boot", TIME, 0, 0.0, 0.0, set_boot, NULL},
-    {"xready", LEVEL, 0, 0.0, 1.0, set_xready, get_xready},
-    {"chg", LEVEL, 0, 0.0, 0.0, NULL, get_chg},
-    {"dsg", LEVEL, 0, 0.0, 0.0, NULL, get_dsg},
-    {"cb", WORD16, 0, 0.0, 0.0, NULL, get_cb},
-    {"mode", MODE, 0, 0.0, 0.0, NULL, get_mode},
+    {"cell", BQSIM_VOLTS, 5, -100.0, 100.0, set_cell, get_cell},
+    {"ts", BQSIM_NUMBER, 1, 0.0, 1e9, set_ts, get_ts},
+    {"tdie", BQSIM_NUMBER, 0, -273.15, 1000.0, set_tdie, get_tdie},
+    {"sense", BQSIM_NUMBER, 0, -10.0, 10.0, set_sense, get_sense},
+    {"chgpin", BQSIM_NUMBER, 0, -100.0, 100.0, set_chgpin, get_chgpin},
+    {"gain", BQSIM_WHOLE, 0, 365.0, 396.0, set_gain, get_gain},
+    {"offset", BQSIM_WHOLE, 0, -128.0, 127.0, set_offset, get_offset},
+    {"supply", BQSIM_SWITCH, 0, 0.0, 1.0, set_supply, get_supply},
+    {"boot", BQSIM_TIME, 0, 0.0, 0.0, set_boot, NULL},
+    {"xready", BQSIM_LEVEL, 0, 0.0, 1.0, set_xready, get_xready},
+    {"chg", BQSIM_LEVEL, 0, 0.0, 0.0, NULL, get_chg},
+    {"dsg", BQSIM_LEVEL, 0, 0.0, 0.0, NULL, get_dsg},
+    {"cb", BQSIM_WORD, 0, 0.0, 0.0, NULL, get_cb},
+    {"mode", BQSIM_NAME, 0, 0.0, 0.0, NULL, get_mode},
 };
-static const item alert = {"alert", LEVEL, 0, 0.0, 0.0, NULL, get_alert};
-static const item alert_ext = {"alert.ext", LEVEL, 0, 0.0, 1.0, set_ext, get_ext};
+static const item alert = {"alert", BQSIM_LEVEL, 0, 0.0, 0.0, NULL, get_alert};
+static const item alert_ext = {"alert.ext", BQSIM_LEVEL, 0, 0.0, 1.0, set_ext, get_ext};
 
 /* The row of a path, and its index; NULL when there is none. */
 static const item *find_item(const sim_x0 *a, bqsim_text path, int *index)
@@ -231,59 +221,6 @@ static const item *find_item(const sim_x0 *a, bqsim_text path, int *index)
     return NULL;
 }
 
-static bool read_word(bqsim_text word, const char *no, const char *yes, double *value)
-{
-    *value = bqsim_is(word, yes) ? 1.0 : 0.0;
-    return bqsim_is(word, no) || bqsim_is(word, yes);
-}
-
-static bool read_value(const item *it, bqsim_text word, double *value)
-{
-    uint64_t ns;
-
-    switch (it->as) {
-    case LEVEL:
-        return read_word(word, "0", "1", value);
-    case SWITCH:
-        return read_word(word, "off", "on", value);
-    case TIME:
-        if (!bqsim_time(word, &ns)) {
-            return false;
-        }
-        *value = (double)ns;
-        return true;
-    default:
-        return bqsim_number(word, value) && *value >= it->low && *value <= it->high &&
-               (it->as != WHOLE || floor(*value) == *value);
-    }
-}
-
-static void print_value(const item *it, double value, char *out, size_t size)
-{
-    static const char *const mode[] = {"off", "ship", "boot", "normal"};
-
-    switch (it->as) {
-    case LEVEL:
-        (void)snprintf(out, size, "%d", value > 0.5);
-        break;
-    case SWITCH:
-        (void)snprintf(out, size, "%s", value > 0.5 ? "on" : "off");
-        break;
-    case WORD16:
-        (void)snprintf(out, size, "%04x", (unsigned)value & 0xffffu);
-        break;
-    case MODE:
-        (void)snprintf(out, size, "%s", mode[(unsigned)value % 4u]);
-        break;
-    case VOLTS:
-        bqsim_print_number(out, size, value, 3);
-        break;
-    default:
-        bqsim_print_number(out, size, value, 0);
-        break;
-    }
-}
-
 bqsim_result bqsim_afe_set(bqsim_call *c, bqsim_text path)
 {
     int index;
@@ -304,7 +241,7 @@ bqsim_result bqsim_afe_set(bqsim_call *c, bqsim_text path)
     if (!bqsim_argument(c, "value", &word)) {
         return BQSIM_ERR;
     }
-    if (!read_value(it, word, &value)) {
+    if (!bqsim_read_value(it->as, word, it->low, it->high, &value)) {
         return bqsim_refuse(c, "value not possible here", word);
     }
     if (!bqsim_end(c)) {
@@ -335,6 +272,9 @@ bqsim_result bqsim_afe_get(bqsim_call *c, bqsim_text path)
     if (!bqsim_end(c)) {
         return BQSIM_ERR;
     }
-    print_value(it, it->get(&c->s->afe, index), text, sizeof text);
+    if (it->as == BQSIM_NAME) {
+        return bqsim_accept(c, mode[(unsigned)it->get(&c->s->afe, index)]);
+    }
+    bqsim_print_value(it->as, it->get(&c->s->afe, index), text, sizeof text);
     return bqsim_accept(c, text);
 }

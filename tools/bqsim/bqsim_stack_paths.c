@@ -1,24 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Inputs and outputs of the bq76PL536 stack: one table row per path. */
 #include "bqsim_call.h"
-#include <stdio.h>
+#include "bqsim_value.h"
 
 static const bqsim_text nothing = {NULL, 0};
-
-typedef enum notation {
-    NUMBER, /* decimal number */
-    VOLTS,  /* the same, printed with at least millivolts */
-    VBAT,   /* VOLTS, or sum */
-    LEVEL,  /* 0 or 1 */
-    SWITCH, /* on or off */
-    BYTE,   /* two hex digits */
-    MODE    /* name of a mode */
-} notation;
 
 /* A row of dev.D: every value travels as a double. set == NULL: read only. */
 typedef struct item {
     const char *name;
-    notation as;
+    bqsim_notation as;
     uint32_t index_first, index_last; /* both 0 = no index; above 0x3f = a register in hex */
     double low, high;
     int (*set)(bqsim_session *s, int device, int index, double value);
@@ -148,87 +138,21 @@ static double get_mode(const bqsim_session *s, int d, int i)
     return (double)sim_pl_get_mode(&s->stack, d);
 }
 
+static const char *const mode[] = {"off", "reset", "active", "sleep", "tsd", "uvlo", "locked"};
+
 static const item items[] = {
-    {"cell", VOLTS, 1, 6, -100.0, 100.0, set_cell, get_cell},
-    {"vbat", VBAT, 0, 0, 0.0, 100.0, set_vbat, get_vbat},
-    {"ts", NUMBER, 1, 2, -1.0, 2.0, set_ts, get_ts},
-    {"gpai", NUMBER, 0, 0, -100.0, 100.0, set_gpai, get_gpai},
-    {"gpio", LEVEL, 0, 0, 0.0, 1.0, set_gpio, get_gpio},
-    {"tdie", NUMBER, 0, 0, -273.15, 1000.0, set_tdie, get_tdie},
-    {"supply", SWITCH, 0, 0, 0.0, 1.0, set_supply, get_supply},
-    {"otp", BYTE, 0x40, 0x4b, 0.0, 255.0, set_otp, get_otp},
-    {"vpp", SWITCH, 0, 0, 0.0, 1.0, set_vpp, get_vpp},
-    {"cb", BYTE, 0, 0, 0.0, 0.0, NULL, get_cb},
-    {"mode", MODE, 0, 0, 0.0, 0.0, NULL, get_mode},
+    {"cell", BQSIM_VOLTS, 1, 6, -100.0, 100.0, set_cell, get_cell},
+    {"vbat", BQSIM_VBAT, 0, 0, 0.0, 100.0, set_vbat, get_vbat},
+    {"ts", BQSIM_NUMBER, 1, 2, -1.0, 2.0, set_ts, get_ts},
+    {"gpai", BQSIM_NUMBER, 0, 0, -100.0, 100.0, set_gpai, get_gpai},
+    {"gpio", BQSIM_LEVEL, 0, 0, 0.0, 1.0, set_gpio, get_gpio},
+    {"tdie", BQSIM_NUMBER, 0, 0, -273.15, 1000.0, set_tdie, get_tdie},
+    {"supply", BQSIM_SWITCH, 0, 0, 0.0, 1.0, set_supply, get_supply},
+    {"otp", BQSIM_BYTE, 0x40, 0x4b, 0.0, 255.0, set_otp, get_otp},
+    {"vpp", BQSIM_SWITCH, 0, 0, 0.0, 1.0, set_vpp, get_vpp},
+    {"cb", BQSIM_BYTE, 0, 0, 0.0, 0.0, NULL, get_cb},
+    {"mode", BQSIM_NAME, 0, 0, 0.0, 0.0, NULL, get_mode},
 };
-
-static bool read_word(bqsim_text word, const char *no, const char *yes, double *value)
-{
-    if (!bqsim_is(word, no) && !bqsim_is(word, yes)) {
-        return false;
-    }
-    *value = bqsim_is(word, yes) ? 1.0 : 0.0;
-    return true;
-}
-
-static bool read_value(const item *it, bqsim_text word, double *value)
-{
-    uint8_t byte = 0;
-
-    switch (it->as) {
-    case LEVEL:
-        return read_word(word, "0", "1", value);
-    case SWITCH:
-        return read_word(word, "off", "on", value);
-    case BYTE:
-        if (!bqsim_hex8(word, &byte)) {
-            return false;
-        }
-        *value = byte;
-        return true;
-    case VBAT:
-        if (bqsim_is(word, "sum")) {
-            *value = -1.0;
-            return true;
-        }
-        return bqsim_number(word, value) && *value >= it->low && *value <= it->high;
-    default:
-        return bqsim_number(word, value) && *value >= it->low && *value <= it->high;
-    }
-}
-
-static void print_value(const item *it, double value, char *out, size_t size)
-{
-    static const char *const mode[] = {"off", "reset", "active", "sleep", "tsd", "uvlo", "locked"};
-
-    switch (it->as) {
-    case LEVEL:
-        (void)snprintf(out, size, "%d", value > 0.5);
-        break;
-    case SWITCH:
-        (void)snprintf(out, size, "%s", value > 0.5 ? "on" : "off");
-        break;
-    case BYTE:
-        (void)snprintf(out, size, "%02x", (unsigned)value & 0xffu);
-        break;
-    case MODE:
-        (void)snprintf(out, size, "%s", mode[(unsigned)value % 7]);
-        break;
-    case VBAT:
-        if (value < 0.0) {
-            (void)snprintf(out, size, "sum");
-            break;
-        }
-        bqsim_print_number(out, size, value, 3);
-        break;
-    case VOLTS:
-        bqsim_print_number(out, size, value, 3);
-        break;
-    case NUMBER:
-        bqsim_print_number(out, size, value, 0);
-        break;
-    }
-}
 
 /* The row of a path without its device, and its index. */
 static const item *find_item(bqsim_text path, int *index)
@@ -253,7 +177,7 @@ static const item *find_item(bqsim_text path, int *index)
         if (!bqsim_part(&path, &part) || path.p != NULL) {
             return NULL;
         }
-        if (it->as == BYTE) {
+        if (it->as == BQSIM_BYTE) {
             if (!bqsim_hex8(part, &reg)) {
                 return NULL;
             }
@@ -322,7 +246,7 @@ bqsim_result bqsim_stack_set_dev(bqsim_call *c, bqsim_text path)
     if (!bqsim_argument(c, "value", &word)) {
         return BQSIM_ERR;
     }
-    if (!read_value(it, word, &value)) {
+    if (!bqsim_read_value(it->as, word, it->low, it->high, &value)) {
         return bqsim_refuse(c, "value not possible here", word);
     }
     if (!bqsim_end(c)) {
@@ -346,7 +270,10 @@ bqsim_result bqsim_stack_get_dev(bqsim_call *c, bqsim_text path)
     if (it == NULL || !bqsim_end(c)) {
         return BQSIM_ERR;
     }
-    print_value(it, it->get(c->s, device, index), text, sizeof text);
+    if (it->as == BQSIM_NAME) {
+        return bqsim_accept(c, mode[(unsigned)it->get(c->s, device, index)]);
+    }
+    bqsim_print_value(it->as, it->get(c->s, device, index), text, sizeof text);
     return bqsim_accept(c, text);
 }
 
@@ -364,7 +291,7 @@ bqsim_result bqsim_stack_set_pin(bqsim_call *c, bqsim_text path)
     if (!bqsim_argument(c, "level", &word)) {
         return BQSIM_ERR;
     }
-    if (!read_word(word, "0", "1", &level)) {
+    if (!bqsim_choice(word, "0", "1", &level)) {
         return bqsim_refuse(c, "a level is 0 or 1", word);
     }
     if (!bqsim_end(c)) {
