@@ -84,7 +84,14 @@ TEXT
 
 Bus time is 8 clocks a byte and 3 us between packets. Besides scans, the configuration of one device is read back every
 `scrub_period_ms`, and balancing adds its writes while it runs.
+
+One complete update of a bq769x0: status, every measurement, clearing of the fetched coulomb counter result. The command fails
+unless the largest part needs 92 bytes with CRC and 50 without in 3 transactions. Addresses count; bus time is 9 clocks a byte.
+
+    build/bench-table16/tools/bench/bench afe
+
 TEXT
+    run table16 bench afe
 }
 
 instruction_part() {

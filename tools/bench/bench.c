@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * bench bus            bytes and packets of one scan for several stack sizes; fails unless they are 23 N + 4 in N + 1
+ * bench afe            the same for one update of the bq769x0 parts; the largest must need 92 bytes (50 without CRC) in 3
  * bench scan N COUNT   bring-up of N devices, then COUNT times scan and copy the sample: the work of which instructions are counted
  */
+#include "bench_afe.h"
 #include "bqhost/bq76pl536.h"
 #include "hal_sim.h"
 #include <inttypes.h>
@@ -136,9 +138,12 @@ int main(int argc, char **argv)
     if (argc == 2 && strcmp(argv[1], "bus") == 0) {
         return bus();
     }
+    if (argc == 2 && strcmp(argv[1], "afe") == 0) {
+        return bench_afe_bus();
+    }
     if (argc == 4 && strcmp(argv[1], "scan") == 0 && atoi(argv[2]) >= 1 && atoi(argv[2]) <= 62) {
         return scans((uint8_t)atoi(argv[2]), atol(argv[3]));
     }
-    fprintf(stderr, "usage: bench bus | bench scan DEVICES COUNT\n");
+    fprintf(stderr, "usage: bench bus | bench afe | bench scan DEVICES COUNT\n");
     return 2;
 }

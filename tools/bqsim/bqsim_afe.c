@@ -40,6 +40,7 @@ bqsim_result bqsim_afe_create(bqsim_call *c)
     }
     s->has_afe = true;
     sim_x0_advance(&s->afe, s->now_ns); /* one time for everything, also in the waveform */
+    sim_x0_record(&s->afe, s->vcd);
     return bqsim_accept(c, NULL);
 }
 
