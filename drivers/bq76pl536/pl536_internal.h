@@ -16,6 +16,7 @@
 #include "bqhost/bq76pl536.h"
 #include "bqhost/bq76pl536_packet.h"
 #include "bqhost/bq76pl536_regs.h"
+#include "bqhost/seq.h"
 
 enum { PL_IO_NONE, PL_IO_TRANSFER, PL_IO_WAIT };
 enum { PL_STATE_NONE, PL_STATE_READY, PL_STATE_ASLEEP };
@@ -73,33 +74,12 @@ enum pl_job {
 PL_JOBS(JOB)
 #undef JOB
 
-#define SEQ_BEGIN(f)                                                                                         \
-    switch ((f)->pc) {                                                                                       \
-    case 0:
-#define SEQ_END                                                                                              \
-    }                                                                                                        \
-    return BQ_E_STATE
 /* Starts a packet; afterwards d->transfer tells how it ended. */
-#define SEQ_SEND(f, start)                                                                                   \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return (start);                                                                                      \
-    case __LINE__:;                                                                                          \
-    } while (0)
+#define SEQ_SEND(f, start) SEQ_YIELD(f, start)
 /* Lets `us` microseconds pass. */
-#define SEQ_WAIT(d, f, us)                                                                                   \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return pl_wait((d), (us));                                                                           \
-    case __LINE__:;                                                                                          \
-    } while (0)
+#define SEQ_WAIT(d, f, us) SEQ_YIELD(f, pl_wait((d), (us)))
 /* Runs a child; afterwards d->result is its status and, after a read, pl_data(d) what was read. */
-#define SEQ_CALL(d, f, job, dev, reg, val)                                                                   \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return pl_push((d), (job), (dev), (reg), (val));                                                     \
-    case __LINE__:;                                                                                          \
-    } while (0)
+#define SEQ_CALL(d, f, job, dev, reg, val) SEQ_YIELD(f, pl_push((d), (job), (dev), (reg), (val)))
 /* The same; the job ends with the status of a child that failed. */
 #define SEQ_TRY(d, f, job, dev, reg, val)                                                                    \
     do {                                                                                                     \
