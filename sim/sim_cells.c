@@ -46,12 +46,15 @@ static bool valid(const sim_cells_config *k)
            in(k->bleed_ohm, 1e-3, 1e9);
 }
 
+double sim_cells_ntc_ohms(double celsius)
+{
+    return NTC_R25 * exp(NTC_BETA * (1.0 / (celsius + KELVIN) - 1.0 / (25.0 + KELVIN)));
+}
+
 static void fill_ratio_table(sim_cells *c)
 {
     for (int i = 0; i <= SIM_CELLS_T_MAX - SIM_CELLS_T_MIN; i++) {
-        double kelvin = (double)(SIM_CELLS_T_MIN + i) + KELVIN;
-        double ohms = NTC_R25 * exp(NTC_BETA * (1.0 / kelvin - 1.0 / (25.0 + KELVIN)));
-        c->ratio[i] = R_B / (R_B + R_T + ohms);
+        c->ratio[i] = R_B / (R_B + R_T + sim_cells_ntc_ohms((double)(SIM_CELLS_T_MIN + i)));
     }
 }
 

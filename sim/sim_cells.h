@@ -2,9 +2,9 @@
 /**
  * @file sim_cells.h
  * A string of cells in series: state of charge, open-circuit voltage, series resistance, balancing bleed,
- * temperature and thermistors. It knows no chip; sim_cells_pl.h joins it to a bq76PL536 stack. All state
- * lives in the caller's sim_cells. Cells, modules and sensors count from 1, cell 1 at the bottom of the
- * string.
+ * temperature and thermistors. It knows no chip; sim_cells_pl.h joins it to a bq76PL536 stack,
+ * sim_cells_x0.h to a bq769x0. All state lives in the caller's sim_cells. Cells, modules and sensors count
+ * from 1, cell 1 at the bottom of the string.
  *
  * What the model holds to be true
  * - Voltage = OCV(state of charge) + R x (pack current - bleed current); positive current charges. The bleed
@@ -96,6 +96,9 @@ int sim_cells_free(sim_cells *c, int cell);
 
 /** Forces a sensor to a temperature. 0, or -1 when refused. */
 int sim_cells_force_sensor(sim_cells *c, int sensor, double celsius);
+
+/** Resistance of a thermistor. */
+double sim_cells_ntc_ohms(double celsius);
 
 /** Temperature a sensor feels, and its ratio V(TS)/REG50. */
 double sim_cells_celsius(const sim_cells *c, int sensor);

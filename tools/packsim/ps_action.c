@@ -60,7 +60,7 @@ static int sensor_action(const context *c, ps_event *v)
     if (c->w->count != 4 || !ps_is(c->w, 2, "celsius")) {
         return ps_fail(c->e, c->at, "expected: sensor N celsius T");
     }
-    if (index_of(c, 1, "sensor", 1, c->s->devices * SIM_CELLS_SENSORS, &v->n) != 0) {
+    if (index_of(c, 1, "sensor", 1, c->s->sensors, &v->n) != 0) {
         return -1;
     }
     return value_of(c, 3, "temperature", SIM_CELLS_T_MIN, SIM_CELLS_T_MAX, &v->value);
@@ -102,9 +102,9 @@ static int wire_action(const context *c, ps_event *v)
 
 static int flip_action(const context *c, ps_event *v)
 {
-    v->kind = PS_ACT_SPI_FLIP;
+    v->kind = PS_ACT_FLIP;
     if (!ps_is(c->w, 1, "flip")) {
-        return ps_fail(c->e, c->at, "expected: spi flip P");
+        return ps_fail(c->e, c->at, "expected: %s flip P", c->w->word[0]);
     }
     return value_of(c, 2, "probability", 0.0, 1.0, &v->value);
 }
@@ -147,27 +147,33 @@ static int weld_action(const context *c, ps_event *v)
     return ps_is(c->w, 1, "weld") ? 0 : ps_fail(c->e, c->at, "expected: contactor weld");
 }
 
-static int other_chip(const context *c, ps_event *v)
+static int afe_action(const context *c, ps_event *v)
 {
-    (void)v;
-    return ps_fail(c->e, c->at, "%s concerns a bq769x0; this pack has a bq76pl536 stack", c->w->word[0]);
+    bool xready = false;
+    if (one_of(c, 1, "alert", "xready", &xready) != 0) {
+        return -1;
+    }
+    v->kind = xready ? PS_ACT_XREADY : PS_ACT_ALERT;
+    return 0;
 }
 
 int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const char *action, ps_place at,
                    ps_error *e)
 {
+    enum { ANY, STACK, AFE }; /* which packs it makes sense for */
     static const struct {
         const char *verb;
         int least, most; /* words */
+        int family;
         int (*parse)(const context *c, ps_event *v);
     } verbs[] = {
-        {"cell", 3, 4, cell_action},       {"sensor", 4, 4, sensor_action},
-        {"current", 2, 2, current_action}, {"request", 2, 2, request_action},
-        {"break", 3, 3, break_action},     {"mend", 1, 1, mend_action},
-        {"device", 3, 3, device_action},   {"wire", 3, 3, wire_action},
-        {"spi", 3, 3, flip_action},        {"bus", 2, 3, bus_action},
-        {"mcu", 2, 2, mcu_action},         {"contactor", 2, 2, weld_action},
-        {"i2c", 1, PS_WORDS, other_chip},  {"afe", 1, PS_WORDS, other_chip},
+        {"cell", 3, 4, ANY, cell_action},       {"sensor", 4, 4, ANY, sensor_action},
+        {"current", 2, 2, ANY, current_action}, {"request", 2, 2, ANY, request_action},
+        {"break", 3, 3, STACK, break_action},   {"mend", 1, 1, STACK, mend_action},
+        {"device", 3, 3, ANY, device_action},   {"wire", 3, 3, STACK, wire_action},
+        {"spi", 3, 3, STACK, flip_action},      {"bus", 2, 3, ANY, bus_action},
+        {"mcu", 2, 2, ANY, mcu_action},         {"contactor", 2, 2, STACK, weld_action},
+        {"i2c", 3, 3, AFE, flip_action},        {"afe", 2, 2, AFE, afe_action},
     };
     memset(v, 0, sizeof *v);
     v->at = at;
@@ -182,6 +188,11 @@ int ps_event_parse(ps_event *v, const ps_scenario *s, const char *time, const ch
     const context c = {&w, s, at, e};
     for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
         if (ps_is(&w, 0, verbs[i].verb)) {
+            if (verbs[i].family == (s->part != NULL ? STACK : AFE)) {
+                return ps_fail(e, at, "%s concerns a %s; this pack has a %s", w.word[0],
+                               s->part != NULL ? "bq76pl536 stack" : "bq769x0",
+                               s->part != NULL ? s->part->name : "bq76pl536 stack");
+            }
             if (w.count < verbs[i].least || w.count > verbs[i].most) {
                 return ps_fail(e, at, "wrong number of words in: %s", action);
             }

@@ -74,7 +74,7 @@ static int expect_state(const context *c, ps_expect *x)
 static int fault_item(const context *c, int *i, ps_expect *x)
 {
     static const char *const names[] = {"cell", "device", "sensor"};
-    const int most[] = {c->s->cells, c->s->devices, c->s->devices * SIM_CELLS_SENSORS};
+    const int most[] = {c->s->cells, c->s->devices, c->s->sensors};
     for (int k = 0; k < 3; k++) {
         if (ps_is(c->w, *i, names[k])) {
             if (*i + 1 >= c->w->count || !ps_int(c->w->word[*i + 1], &x->n) || x->n < 1 || x->n > most[k]) {

@@ -7,36 +7,61 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { ANY, STACK, AFE }; /* which packs have the field */
+
 /* Fields that the pack controller has no setter for. */
 static const struct {
     const char *name;
     size_t offset, size;
+    int family;
+    bool is_bool;
 } fields[] = {
-#define DRIVER(name, member)                                                                                 \
+#define DRIVER(name, member, is_bool)                                                                        \
     {                                                                                                        \
-        name, offsetof(ps_scenario, driver.member), sizeof(((ps_scenario *)NULL)->driver.member)             \
+        name, offsetof(ps_scenario, driver.member), sizeof(((ps_scenario *)NULL)->driver.member), STACK,     \
+            is_bool                                                                                          \
     }
-    DRIVER("cov_mv", cov_mv),
-    DRIVER("cuv_mv", cuv_mv),
-    DRIVER("cov_delay_us", cov_delay_us),
-    DRIVER("cuv_delay_us", cuv_delay_us),
-    DRIVER("ot1_c", ot_c[0]),
-    DRIVER("ot2_c", ot_c[1]),
-    DRIVER("ot_delay_ms", ot_delay_ms),
-    DRIVER("spi_hz", spi_hz),
-    DRIVER("balance_timer_s", balance_timer_s),
-    DRIVER("balance_settle_ms", balance_settle_ms),
-    DRIVER("sensor_settle_ms", sensor_settle_ms),
-    DRIVER("scrub_period_ms", scrub_period_ms),
-    DRIVER("wire_limit_mv", wire_limit_mv),
-    DRIVER("frozen_scans", frozen_scans),
-    DRIVER("use_conv_pin", use_conv_pin),
-    DRIVER("variant_a", variant_a),
-    DRIVER("allow_partial", allow_partial),
-    {"retry_ms", offsetof(ps_scenario, app.retry_ms), sizeof(uint32_t)},
-    {"soc_rest_ma", offsetof(ps_scenario, app.pack.soc.rest_ma), sizeof(int32_t)},
-    {"soc_rest_ms", offsetof(ps_scenario, app.pack.soc.rest_ms), sizeof(uint32_t)},
-    {"soc_gap_ms", offsetof(ps_scenario, app.pack.soc.gap_ms), sizeof(uint32_t)},
+#define AFE_DRIVER(member, is_bool)                                                                          \
+    {                                                                                                        \
+#member, offsetof(ps_scenario, afe.member), sizeof(((ps_scenario *)NULL)->afe.member), AFE, is_bool  \
+    }
+    DRIVER("cov_mv", cov_mv, false),
+    DRIVER("cuv_mv", cuv_mv, false),
+    DRIVER("cov_delay_us", cov_delay_us, false),
+    DRIVER("cuv_delay_us", cuv_delay_us, false),
+    DRIVER("ot1_c", ot_c[0], false),
+    DRIVER("ot2_c", ot_c[1], false),
+    DRIVER("ot_delay_ms", ot_delay_ms, false),
+    DRIVER("spi_hz", spi_hz, false),
+    DRIVER("balance_timer_s", balance_timer_s, false),
+    DRIVER("balance_settle_ms", balance_settle_ms, false),
+    DRIVER("sensor_settle_ms", sensor_settle_ms, false),
+    DRIVER("scrub_period_ms", scrub_period_ms, false),
+    DRIVER("wire_limit_mv", wire_limit_mv, false),
+    DRIVER("frozen_scans", frozen_scans, false),
+    DRIVER("use_conv_pin", use_conv_pin, true),
+    DRIVER("variant_a", variant_a, true),
+    DRIVER("allow_partial", allow_partial, true),
+    AFE_DRIVER(ov_mv, false),
+    AFE_DRIVER(uv_mv, false),
+    AFE_DRIVER(ov_recover_mv, false),
+    AFE_DRIVER(uv_recover_mv, false),
+    AFE_DRIVER(ov_delay_s, false),
+    AFE_DRIVER(uv_delay_s, false),
+    AFE_DRIVER(ocd_ma, false),
+    AFE_DRIVER(scd_ma, false),
+    AFE_DRIVER(ocd_delay_ms, false),
+    AFE_DRIVER(scd_delay_us, false),
+    AFE_DRIVER(load_settle_ms, false),
+    AFE_DRIVER(frozen_scans, false),
+    AFE_DRIVER(balance_timer_s, false),
+    AFE_DRIVER(balance_across_groups, true),
+    AFE_DRIVER(keep_fets, true),
+    {"retry_ms", offsetof(ps_scenario, app.retry_ms), sizeof(uint32_t), ANY, false},
+    {"soc_rest_ma", offsetof(ps_scenario, app.pack.soc.rest_ma), sizeof(int32_t), ANY, false},
+    {"soc_rest_ms", offsetof(ps_scenario, app.pack.soc.rest_ms), sizeof(uint32_t), ANY, false},
+    {"soc_gap_ms", offsetof(ps_scenario, app.pack.soc.gap_ms), sizeof(uint32_t), ANY, false},
+#undef AFE_DRIVER
 #undef DRIVER
 };
 
@@ -59,16 +84,14 @@ const char *ps_limit_name(int i)
 static int set_field(ps_scenario *s, const char *key, int value)
 {
     for (int i = 0; i < FIELDS; i++) {
-        if (strcmp(key, fields[i].name) != 0) {
+        if (strcmp(key, fields[i].name) != 0 || fields[i].family == (s->part != NULL ? STACK : AFE)) {
             continue;
         }
         unsigned char *p = (unsigned char *)s + fields[i].offset;
         if (value < 0 || (fields[i].size < sizeof value && value >> (8u * (unsigned)fields[i].size) != 0)) {
             return -1;
         }
-        bool is_bool = strcmp(key, "use_conv_pin") == 0 || strcmp(key, "variant_a") == 0 ||
-                       strcmp(key, "allow_partial") == 0;
-        if (is_bool && value > 1) {
+        if (fields[i].is_bool && value > 1) {
             return -1;
         }
         uint8_t u8 = (uint8_t)value;
@@ -122,18 +145,8 @@ static void soc_default(ps_scenario *s)
     }
 }
 
-void ps_limits_default(ps_scenario *s, bool lfp)
+static void stack_default(ps_scenario *s, bool lfp)
 {
-    uint16_t cells = (uint16_t)s->cells, sensors = (uint16_t)(s->devices * SIM_CELLS_SENSORS);
-    uint16_t modules = (uint16_t)s->devices;
-    s->app.pack =
-        lfp ? bq_pack_config_lfp(cells, sensors, modules) : bq_pack_config_nmc(cells, sensors, modules);
-    s->app.period_ms = (uint32_t)(s->period / PS_MS);
-    uint32_t patience = 4u * s->app.period_ms;
-    if (s->app.pack.comm_timeout_ms < patience && patience <= 30000u) {
-        s->app.pack.comm_timeout_ms = (uint16_t)patience;
-    }
-    soc_default(s);
     bq76pl536_config *d = &s->driver;
     d->devices = (uint8_t)s->devices;
     d->cells = s->cells_of;
@@ -148,6 +161,25 @@ void ps_limits_default(ps_scenario *s, bool lfp)
     d->ot_delay_ms = 500;
     uint32_t timer_s = s->app.period_ms * 125u / 90000u + 2u;
     d->balance_timer_s = (uint8_t)(timer_s < 4u ? 4u : timer_s);
+}
+
+void ps_limits_default(ps_scenario *s, bool lfp)
+{
+    uint16_t cells = (uint16_t)s->cells, sensors = (uint16_t)s->sensors;
+    uint16_t modules = (uint16_t)s->devices;
+    s->app.pack =
+        lfp ? bq_pack_config_lfp(cells, sensors, modules) : bq_pack_config_nmc(cells, sensors, modules);
+    s->app.period_ms = (uint32_t)(s->period / PS_MS);
+    uint32_t patience = 4u * s->app.period_ms;
+    if (s->app.pack.comm_timeout_ms < patience && patience <= 30000u) {
+        s->app.pack.comm_timeout_ms = (uint16_t)patience;
+    }
+    soc_default(s);
+    if (s->part != NULL) {
+        ps_afe_default(s, lfp);
+    } else {
+        stack_default(s, lfp);
+    }
 }
 
 /* ---- the firmware's own validators ------------------------------------------------------------ */
@@ -197,8 +229,12 @@ static bq_status check_app(const ps_scenario *s, const char **field)
     return bq_app_config_validate(&s->app, field);
 }
 
-static bq_status check_stack(const ps_scenario *s, const char **field)
+static bq_status check_monitor(const ps_scenario *s, const char **field)
 {
+    if (s->part != NULL) {
+        *field = "the driver's configuration";
+        return ps_afe_check(s);
+    }
     bq_status status = check_driver(&s->driver);
     *field = status == BQ_E_COV_CUV ? "cov_mv - cuv_mv" : "the driver's configuration";
     return status;
@@ -266,6 +302,6 @@ int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e)
             }
         }
     }
-    s->app.balance_timer_s = s->driver.balance_timer_s;
-    return refuse(s, ini, &plain, check_app, e) != 0 ? -1 : refuse(s, ini, &plain, check_stack, e);
+    s->app.balance_timer_s = s->part != NULL ? s->afe.balance_timer_s : s->driver.balance_timer_s;
+    return refuse(s, ini, &plain, check_app, e) != 0 ? -1 : refuse(s, ini, &plain, check_monitor, e);
 }

@@ -123,6 +123,16 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
     return 0;
 }
 
+/* Both families of monitors have it. */
+static bool named_before(int i)
+{
+    int k = 0;
+    while (k < i && strcmp(ps_limit_name(k), ps_limit_name(i)) != 0) {
+        k++;
+    }
+    return k < i;
+}
+
 void ps_options_help(FILE *to)
 {
     (void)fputs(
@@ -139,34 +149,39 @@ void ps_options_help(FILE *to)
         "--duration beyond or short of the scenario's own: expectations that look beyond a shortened run are "
         "left out.\n"
         "\n"
-        "[pack]   monitor (bq76pl536), devices, cells, chemistry (nmc, lfp, FILE.csv), capacity_ah (5), "
-        "resistance_mohm (2),\n"
-        "         soc_percent (50), soc_spread_percent (0), ambient_c (25), bleed_ohm (33), shunt_mohm "
-        "(0.1),\n"
-        "         eprom (blank; fast = the chips wake up from a reset with 6 us conversions selected)\n"
+        "[pack]   monitor (bq76pl536, or a bq769x0 such as bq7694003), devices, cells, chemistry (nmc, lfp, "
+        "FILE.csv),\n"
+        "         capacity_ah (5), resistance_mohm (2), soc_percent (50), soc_spread_percent (0), "
+        "ambient_c (25),\n"
+        "         bleed_ohm (33), shunt_mohm (1)\n"
+        "         bq76pl536: eprom (blank; fast = the chips wake up from a reset with 6 us conversions "
+        "selected)\n"
+        "         bq769x0: adc_freeze (never; a time at which the converter stops until it is switched off)\n"
         "[run]    duration (60 s), period (100 ms), seed (1)\n"
         "[load]   current_a (0) or file; request on|off (off)\n"
         "[events] T = ACTION: cell N volts V; cell N free; sensor N celsius T; current A; current file; "
         "request on|off;\n"
-        "         break above K; mend; device K off|on; wire N open|closed; spi flip P; bus dead 00|ff; bus "
-        "free;\n"
-        "         mcu reset; contactor weld\n"
-        "         Two sensors per device. Wire N is the sense wire at the positive end of cell N, on the "
-        "side of the device\n"
-        "         that measures this cell; wire 0 is the lowest of the pack.\n"
+        "         device K off|on; bus dead 00|ff; bus free; mcu reset\n"
+        "         bq76pl536: break above K; mend; wire N open|closed; spi flip P; contactor weld\n"
+        "         bq769x0: i2c flip P; afe xready; afe alert (something outside holds ALERT high for 300 "
+        "ms)\n"
+        "         Two sensors per device (bq769x0: one per five inputs). Wire N is the sense wire at the "
+        "positive end of cell N,\n"
+        "         on the side of the device that measures this cell; wire 0 is the lowest of the pack.\n"
         "[expect] state STATE at T; fault NAME [cell N | device K | sensor N] within T of T0; no fault "
         "before T; no faults;\n"
         "         discovered K at T; spread below X mv at T; soc error below X percent; measurement error "
         "below X mv;\n"
         "         outputs off within T of T0; recovered at T; misuse none; speed above X\n"
-        "         \"recovered\": standby or on, no fault, every device found and every value valid. Errors "
-        "are the worst of the\n"
-        "         run. Spread is the true one.\n",
+        "         \"outputs\": the contactor line; of a bq769x0: off when both FETs are. \"recovered\": "
+        "standby or on, no fault,\n"
+        "         every device found and every value valid. Errors are the worst of the run. Spread is the "
+        "true one.\n",
         to);
     (void)fputs("[limits] integers under the firmware's own names:\n", to);
     int column = 0;
     for (int i = 0; ps_limit_name(i) != NULL; i++) {
-        if (ps_limit_follows(ps_limit_name(i))) {
+        if (ps_limit_follows(ps_limit_name(i)) || named_before(i)) {
             continue;
         }
         column += fprintf(to, "%s %s", column == 0 ? "        " : ",", ps_limit_name(i));

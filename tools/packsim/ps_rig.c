@@ -5,23 +5,30 @@
 #include <math.h>
 #include <string.h>
 
-#define WORLD_STEP (100 * PS_MS)
 #define OBSERVE_STEP (4 * PS_MS) /* resolution of balancing times while the bus is busy */
 #define BLED_LATELY (20 * PS_S)  /* without balancing for so long: look only once per world step */
 #define POISON 0xa5
-#define FUNCTION_CONFIG 0x40
-#define FAST_CONVERSIONS 0x50 /* ADCT = 01b: 6 us */
 
 uint64_t ps_rig_now(const ps_rig *r)
 {
-    return sim_pl_now(&r->pl);
+    return r->monitor->now(r);
 }
 
 /* ---- the world -------------------------------------------------------------------------------- */
 
-static double current_at(ps_rig *r, uint64_t t)
+double ps_rig_asked_at(const ps_rig *r, uint64_t t)
 {
-    return r->line_on || r->welded ? sim_cells_load_at(&r->s->load, (double)t / 1e9) : 0.0;
+    return sim_cells_load_at(&r->s->load, (double)t / 1e9);
+}
+
+double ps_rig_current_at(const ps_rig *r, uint64_t t)
+{
+    unsigned open = r->welded ? PS_CHARGE | PS_DISCHARGE : r->paths;
+    if (open == 0u) {
+        return 0.0;
+    }
+    double asked = ps_rig_asked_at(r, t);
+    return (open & (asked > 0.0 ? PS_CHARGE : PS_DISCHARGE)) != 0u ? asked : 0.0;
 }
 
 static void remember(ps_rig *r)
@@ -34,7 +41,7 @@ static void remember(ps_rig *r)
 
 static void show(ps_rig *r)
 {
-    sim_cells_pl_feed(&r->world, &r->pl);
+    r->monitor->feed(r);
     remember(r);
 }
 
@@ -42,7 +49,7 @@ static void observe(ps_rig *r)
 {
     uint64_t now = ps_rig_now(r);
     if (now > r->observed_t) {
-        if (sim_cells_pl_observe(&r->world, &r->pl, (double)(now - r->observed_t) / 1e9)) {
+        if (r->monitor->observe(r, (double)(now - r->observed_t) / 1e9)) {
             r->bled_t = now;
         }
         r->observed_t = now;
@@ -54,7 +61,7 @@ static void world_step(ps_rig *r)
 {
     uint64_t now = ps_rig_now(r);
     observe(r);
-    double to = current_at(r, now);
+    double to = ps_rig_current_at(r, now);
     sim_cells_step(&r->world, (double)(now - r->world_t) / 1e9, r->world_a, to);
     r->world_t = now;
     r->world_a = to;
@@ -63,9 +70,29 @@ static void world_step(ps_rig *r)
 /* A load that jumped takes effect at once. */
 static void world_jump(ps_rig *r)
 {
-    r->world_a = current_at(r, ps_rig_now(r));
+    r->world_a = ps_rig_current_at(r, ps_rig_now(r));
     sim_cells_step(&r->world, 0.0, r->world_a, r->world_a);
     show(r);
+}
+
+/* Brings moved paths into the world. */
+static bool follow(ps_rig *r)
+{
+    unsigned paths = r->monitor->paths(r);
+    if (paths == r->paths) {
+        return false;
+    }
+    world_step(r);
+    r->paths = paths;
+    r->moved_t = ps_rig_now(r);
+    world_jump(r);
+    return true;
+}
+
+static uint64_t piece_of(const ps_rig *r, uint64_t most)
+{
+    uint64_t due = r->monitor->due != NULL ? r->monitor->due(r) : most;
+    return due < most ? due : most;
 }
 
 void ps_rig_advance(ps_rig *r, uint64_t ns)
@@ -73,9 +100,12 @@ void ps_rig_advance(ps_rig *r, uint64_t ns)
     uint64_t now = ps_rig_now(r), end = now + ns;
     while (now < end) {
         uint64_t next = (now / r->step + 1u) * r->step;
-        uint64_t piece = (next < end ? next : end) - now;
-        sim_pl_advance(&r->pl, piece);
+        uint64_t piece = piece_of(r, (next < end ? next : end) - now);
+        r->monitor->advance(r, piece);
         now += piece;
+        if (r->monitor->due != NULL && follow(r)) {
+            r->moved = true;
+        }
         if (now == next) {
             world_step(r);
             show(r);
@@ -85,27 +115,21 @@ void ps_rig_advance(ps_rig *r, uint64_t ns)
     }
 }
 
-/* The back-end lets time pass while the bus is busy. */
-static void advance_hook(void *ctx, uint64_t ns)
+void ps_rig_advance_hook(void *ctx, uint64_t ns)
 {
     ps_rig_advance(ctx, ns);
 }
 
 bool ps_rig_outputs_on(const ps_rig *r)
 {
-    return hal_sim_line(&r->hal, BQ_LINE_CONTACTOR);
+    return r->monitor->paths(r) != 0u;
 }
 
 bool ps_rig_sync(ps_rig *r)
 {
-    bool on = ps_rig_outputs_on(r);
-    if (on == r->line_on) {
-        return false;
-    }
-    world_step(r);
-    r->line_on = on;
-    world_jump(r);
-    return true;
+    bool moved = r->moved;
+    r->moved = false;
+    return follow(r) || moved;
 }
 
 const double *ps_rig_truth(const ps_rig *r, uint64_t t)
@@ -125,7 +149,7 @@ const double *ps_rig_truth(const ps_rig *r, uint64_t t)
 static bq_status read_ammeter(void *ctx, int32_t *current_ma)
 {
     ps_rig *r = ctx;
-    *current_ma = (int32_t)lround(current_at(r, ps_rig_now(r)) * 1000.0);
+    *current_ma = (int32_t)lround(ps_rig_current_at(r, ps_rig_now(r)) * 1000.0);
     return BQ_OK;
 }
 
@@ -133,19 +157,16 @@ static bq_status boot(ps_rig *r)
 {
     const ps_scenario *s = r->s;
     ps_firmware *f = &r->fw;
-    const bq_spi spi = hal_sim_spi(&r->hal);
-    const bq_gpio gpio = hal_sim_gpio(&r->hal);
-    const bq_clock clock = hal_sim_clock(&r->hal);
+    const bq_gpio gpio = r->monitor->gpio(r);
+    const bq_clock clock = r->monitor->clock(r);
     const bq_ammeter ammeter = {read_ammeter, r};
-    bq_status status = bq76pl536_init(&f->driver, &s->driver, &spi, &gpio, &clock, f->devices,
-                                      (uint8_t)BQ76PL536_MAX_DEVICES);
+    bq_status status = r->monitor->init(r);
     if (status != BQ_OK) {
         return status;
     }
-    r->afe = bq76pl536_afe(&f->driver);
-    status = bq_app_init(&f->app, &s->app, &r->afe, &gpio, &clock, &ammeter, f->cells, SIM_CELLS_MAX,
-                         f->temps, SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
-    return status;
+    return bq_app_init(&f->app, &s->app, &r->afe, &gpio, &clock,
+                       r->monitor->measures_current ? NULL : &ammeter, f->cells, SIM_CELLS_MAX, f->temps,
+                       SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
 }
 
 static uint64_t errors_of(const bq_link_stats *s)
@@ -179,7 +200,7 @@ static void restart(ps_rig *r)
 {
     keep_stats(r);
     memset(&r->fw, POISON, sizeof r->fw);
-    hal_sim_reset(&r->hal);
+    r->monitor->release(r);
     (void)boot(r);
     (void)bq_app_request(&r->fw.app, r->request);
 }
@@ -190,21 +211,11 @@ int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
 {
     memset(r, 0, sizeof *r);
     r->s = s;
-    r->step = s->period < WORLD_STEP ? s->period : WORLD_STEP;
-    sim_pl_options options = {0};
-    options.seed = (uint32_t)s->seed;
-    options.variant_a = s->driver.variant_a;
-    if (sim_cells_init(&r->world, &s->world) != 0 || sim_pl_init(&r->pl, s->devices, &options) != 0) {
+    r->monitor = s->part != NULL ? &ps_afe : &ps_stack;
+    r->step = s->period < r->monitor->world_step ? s->period : r->monitor->world_step;
+    if (sim_cells_init(&r->world, &s->world) != 0 || r->monitor->build(r) != 0) {
         return ps_fail(e, s->pack_at, "the simulator refuses this pack");
     }
-    sim_pl_bus_fault(&r->pl)->rng = s->seed;
-    for (int k = 1; s->eprom_fast && k <= s->devices; k++) {
-        (void)sim_pl_set_otp(&r->pl, k, FUNCTION_CONFIG, FAST_CONVERSIONS);
-    }
-    hal_sim_init(&r->hal, &r->pl);
-    r->hal.advance = advance_hook;
-    r->hal.advance_ctx = r;
-    r->hal.missing = 1u << (unsigned)BQ_LINE_AFE_POWER; /* the supply is the scenario's affair */
     show(r);
     bq_status status = boot(r);
     if (status != BQ_OK) {
@@ -219,7 +230,7 @@ int ps_rig_record(ps_rig *r, const char *path)
     if (sim_vcd_open(&r->vcd, path) != 0) {
         return -1;
     }
-    sim_pl_record(&r->pl, &r->vcd);
+    r->monitor->record(r, &r->vcd);
     r->recording = true;
     return 0;
 }
@@ -229,32 +240,25 @@ int ps_rig_close(ps_rig *r)
     if (!r->recording) {
         return 0;
     }
-    sim_pl_record(&r->pl, NULL);
+    r->monitor->record(r, NULL);
     r->recording = false;
     return sim_vcd_close(&r->vcd, ps_rig_now(r));
 }
 
 /* ---- events ----------------------------------------------------------------------------------- */
 
-static void set_wire(ps_rig *r, int wire, bool open)
+void ps_rig_act(ps_rig *r, const ps_event *v)
 {
-    int module = 1, left = wire;
-    while (left > r->world.config.cells_in_module[module - 1]) {
-        left -= r->world.config.cells_in_module[module - 1];
-        module++;
+    switch (v->kind) {
+    case PS_ACT_REQUEST:
+        ask(r, v->on);
+        return;
+    case PS_ACT_MCU_RESET:
+        restart(r);
+        return;
+    default:
+        break;
     }
-    (void)sim_pl_set_wire(&r->pl, module, left, open);
-}
-
-static void mend(ps_rig *r)
-{
-    for (int k = 1; k < r->s->devices; k++) {
-        (void)sim_pl_set_link(&r->pl, k, false);
-    }
-}
-
-static void act_on_world(ps_rig *r, const ps_event *v)
-{
     world_step(r);
     switch (v->kind) {
     case PS_ACT_CELL_VOLTS:
@@ -273,47 +277,13 @@ static void act_on_world(ps_rig *r, const ps_event *v)
     case PS_ACT_CURRENT_FILE:
         r->s->load.use_table = 1;
         break;
-    default:
+    case PS_ACT_WELD:
         r->welded = true;
         hal_sim_weld(&r->hal, true);
         break;
+    default:
+        r->monitor->act(r, v);
+        return;
     }
     world_jump(r);
-}
-
-void ps_rig_act(ps_rig *r, const ps_event *v)
-{
-    sim_bus_fault *bus = sim_pl_bus_fault(&r->pl);
-    switch (v->kind) {
-    case PS_ACT_REQUEST:
-        ask(r, v->on);
-        break;
-    case PS_ACT_BREAK:
-        (void)sim_pl_set_link(&r->pl, v->n, true);
-        break;
-    case PS_ACT_MEND:
-        mend(r);
-        break;
-    case PS_ACT_DEVICE:
-        (void)sim_pl_set_supply(&r->pl, v->n, v->on);
-        break;
-    case PS_ACT_WIRE:
-        set_wire(r, v->n, v->on);
-        break;
-    case PS_ACT_SPI_FLIP:
-        bus->flip_probability = v->value;
-        break;
-    case PS_ACT_BUS_DEAD:
-        bus->dead = v->on ? 2 : 1;
-        break;
-    case PS_ACT_BUS_FREE:
-        bus->dead = 0;
-        break;
-    case PS_ACT_MCU_RESET:
-        restart(r);
-        break;
-    default:
-        act_on_world(r, v);
-        break;
-    }
 }

@@ -31,16 +31,18 @@ static void watch_faults(ps_run *u)
 /* Worst difference between what was measured and what was true at the conversion. */
 static void watch_cells(ps_run *u, const bq_sample *s)
 {
-    bq_clock clock = hal_sim_clock(&u->rig->hal);
-    uint32_t age_us = clock.now_us(clock.ctx) - s->t_us;
-    const double *truth = ps_rig_truth(u->rig, ps_rig_now(u->rig) - (uint64_t)age_us * 1000u);
+    const ps_rig *r = u->rig;
+    uint32_t age_us = (uint32_t)(ps_rig_now(r) / 1000u) - s->t_us;
+    uint64_t t = r->monitor->conversion(r, ps_rig_now(r) - (uint64_t)age_us * 1000u);
+    const double *truth = t != UINT64_MAX ? ps_rig_truth(r, t) : NULL;
     if (truth == NULL) {
         return;
     }
     double worst = u->totals.measurement_mv;
     for (int i = 0; i < s->cell_count; i++) {
         const bq_cell_reading *c = &s->cells[i];
-        if ((c->quality & BQ_Q_VALID) != 0u && s->modules[c->module].age_ms <= age_us / 1000u + 1u) {
+        if ((c->quality & BQ_Q_VALID) != 0u &&
+            s->modules[c->module].age_ms <= age_us / 1000u + 1u + r->monitor->age_slack_ms) {
             double error = fabs((double)c->mv - truth[i] * 1000.0);
             worst = error > worst ? error : worst;
         }
@@ -63,7 +65,7 @@ static void watch_sample(ps_run *u)
     if (s->cell_count == 0u || s->sequence == u->sequence) {
         return;
     }
-    uint64_t bytes = sim_pl_bus_fault(&u->rig->pl)->bytes;
+    uint64_t bytes = u->rig->monitor->bytes(u->rig);
     if (u->seen_sample) {
         u->bytes_sum += bytes - u->bytes_at_sample;
         u->bytes_scans++;
@@ -147,7 +149,7 @@ static uint64_t turn(ps_run *u, uint64_t now)
     do_events(u, now);
     uint64_t hint = (uint64_t)bq_app_step(&r->fw.app) * 1000u;
     if (ps_rig_sync(r)) {
-        ps_judge_outputs(u->judge, ps_rig_now(r), ps_rig_outputs_on(r));
+        ps_judge_outputs(u->judge, r->moved_t, ps_rig_outputs_on(r));
     }
     if (bq_app_pack(&r->fw.app)->faults != u->fault_mask) {
         watch_faults(u);
@@ -216,7 +218,7 @@ void ps_run_all(ps_run *u)
     u->simulated = ps_rig_now(u->rig);
     u->spread_end_mv = sim_cells_spread(&u->rig->world) * 1000.0;
     u->bytes_per_scan = u->bytes_scans > 0 ? (double)u->bytes_sum / (double)u->bytes_scans : 0.0;
-    u->totals.misuse = sim_pl_misuse(&u->rig->pl)->count;
+    u->totals.misuse = u->rig->monitor->misuse(u->rig)->count;
     u->totals.speed = (double)u->simulated / 1e9 / (seconds > 1e-9 ? seconds : 1e-9);
     ps_judge_end(u->judge, &u->totals);
     if (u->watch) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From entries to a checked scenario. */
 #include "ps_scenario.h"
+#include "sim_cells_x0.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -76,15 +77,45 @@ static int build_monitor(const build *b)
         return ps_fail(b->e, at, "[pack] has no monitor");
     }
     b->s->pack_at = at;
-    if (strncmp(text, "bq769", 5) == 0) {
-        return ps_fail(b->e, at, "monitor: %s is not supported yet, only bq76pl536", text);
+    b->s->part = sim_x0_find_part(text);
+    return b->s->part != NULL || strcmp(text, "bq76pl536") == 0
+               ? 0
+               : ps_fail(b->e, at, "monitor: unknown part %s", text);
+}
+
+/* A key that only the other kind of monitor has. */
+static int foreign(const build *b, const char *key, bool of_afe)
+{
+    ps_place at;
+    if (ps_ini_get(b->ini, "pack", key, &at) == NULL || of_afe == (b->s->part != NULL)) {
+        return 0;
     }
-    return strcmp(text, "bq76pl536") == 0 ? 0 : ps_fail(b->e, at, "monitor: unknown part %s", text);
+    return ps_fail(b->e, at, "%s concerns a %s", key, of_afe ? "bq769x0" : "bq76pl536");
+}
+
+static int build_afe_cells(const build *b)
+{
+    ps_scenario *s = b->s;
+    s->cells = s->part->cells;
+    if (whole(b, "pack", "cells", 1, SIM_CELLS_MAX, &s->cells) != 0) {
+        return -1;
+    }
+    ps_place at = s->pack_at;
+    (void)ps_ini_get(b->ini, "pack", "cells", &at);
+    if (sim_cells_x0_share(&s->world, s->part->cells, s->cells) != 0) {
+        return ps_fail(b->e, at, "%d cells cannot be connected to a %s", s->cells, s->part->name);
+    }
+    s->devices = 1;
+    s->sensors = s->world.modules;
+    return 0;
 }
 
 static int build_cells(const build *b)
 {
     ps_scenario *s = b->s;
+    if (s->part != NULL) {
+        return build_afe_cells(b);
+    }
     if (whole(b, "pack", "devices", 1, (int)BQ76PL536_MAX_DEVICES, &s->devices) != 0 ||
         whole(b, "pack", "cells", 1, SIM_CELLS_MAX, &s->cells) != 0) {
         return -1;
@@ -100,6 +131,7 @@ static int build_cells(const build *b)
         return ps_fail(b->e, at, "%d cells cannot be shared by %d devices of 3 to 6 cells", s->cells,
                        s->devices);
     }
+    s->sensors = s->devices * SIM_CELLS_SENSORS;
     s->world.modules = s->devices;
     for (int m = 0; m < s->devices; m++) {
         int n = s->cells / s->devices + (m < s->cells % s->devices ? 1 : 0);
@@ -138,21 +170,25 @@ static int build_eprom(const build *b)
 static int build_pack(const build *b, bool *lfp)
 {
     sim_cells_config *w = &b->s->world;
-    double mohm = 2.0, shunt = 0.1;
+    double mohm = 2.0, shunt = 1.0;
     w->capacity_ah = 5.0;
     w->soc_percent = 50.0;
     w->ambient_c = 25.0;
     w->bleed_ohm = 33.0;
-    if (build_monitor(b) != 0 || build_cells(b) != 0 || build_chemistry(b, lfp) != 0 || build_eprom(b) != 0 ||
-        number(b, "pack", "capacity_ah", 0.01, 4000.0, &w->capacity_ah) != 0 ||
+    b->s->adc_freeze = UINT64_MAX;
+    if (build_monitor(b) != 0 || foreign(b, "devices", false) != 0 || foreign(b, "eprom", false) != 0 ||
+        foreign(b, "adc_freeze", true) != 0 || build_cells(b) != 0 || build_chemistry(b, lfp) != 0 ||
+        build_eprom(b) != 0 || number(b, "pack", "capacity_ah", 0.01, 4000.0, &w->capacity_ah) != 0 ||
         number(b, "pack", "resistance_mohm", 0.0, 1000.0, &mohm) != 0 ||
         number(b, "pack", "soc_percent", 0.0, 100.0, &w->soc_percent) != 0 ||
         number(b, "pack", "soc_spread_percent", 0.0, 100.0, &w->soc_spread_percent) != 0 ||
         number(b, "pack", "ambient_c", -40.0, 100.0, &w->ambient_c) != 0 ||
         number(b, "pack", "bleed_ohm", 0.1, 1e6, &w->bleed_ohm) != 0 ||
-        number(b, "pack", "shunt_mohm", 0.001, 1000.0, &shunt) != 0) {
+        number(b, "pack", "shunt_mohm", 0.1, 100.0, &shunt) != 0 ||
+        time_key(b, "pack", "adc_freeze", &b->s->adc_freeze) != 0) {
         return -1;
     }
+    b->s->shunt_ohm = shunt / 1000.0;
     w->resistance_ohm = mohm / 1000.0;
     w->ocv = &b->s->ocv;
     return 0;

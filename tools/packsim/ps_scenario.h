@@ -8,10 +8,12 @@
 #define PS_SCENARIO_H
 
 #include "bqhost/app.h"
+#include "bqhost/bq769x0.h"
 #include "bqhost/bq76pl536.h"
 #include "ps_ini.h"
 #include "sim_cells.h"
 #include "sim_cells_load.h"
+#include "sim_x0.h"
 
 #define PS_EVENTS 256
 #define PS_EXPECTS 128
@@ -27,13 +29,15 @@ typedef enum ps_action_kind {
     PS_ACT_REQUEST, /**< on */
     PS_ACT_BREAK,
     PS_ACT_MEND,
-    PS_ACT_DEVICE, /**< on */
-    PS_ACT_WIRE,   /**< on = open */
-    PS_ACT_SPI_FLIP,
+    PS_ACT_DEVICE,   /**< on */
+    PS_ACT_WIRE,     /**< on = open */
+    PS_ACT_FLIP,     /**< bits of the bus, SPI or I2C */
     PS_ACT_BUS_DEAD, /**< on = ff */
     PS_ACT_BUS_FREE,
     PS_ACT_MCU_RESET,
-    PS_ACT_WELD
+    PS_ACT_WELD,
+    PS_ACT_XREADY,
+    PS_ACT_ALERT
 } ps_action_kind;
 
 typedef struct ps_event {
@@ -76,7 +80,11 @@ typedef struct ps_expect {
 } ps_expect;
 
 typedef struct ps_scenario {
-    int devices, cells;
+    const sim_x0_part *part; /**< NULL = a stack of bq76PL536 */
+    int devices, cells, sensors;
+    double shunt_ohm;
+    uint64_t
+        adc_freeze; /**< bq769x0: the converter stops here until it is switched off; UINT64_MAX = never */
     sim_cells_config world;
     sim_ocv ocv;
     sim_cells_load load;
@@ -85,6 +93,7 @@ typedef struct ps_scenario {
     bool eprom_fast; /**< FUNCTION_CONFIG in the EPROM selects 6 us conversions; otherwise blank */
     bq_app_config app;
     bq76pl536_config driver;
+    bq769x0_config afe;
     bq_ocv_point soc_points[SIM_OCV_POINTS]; /**< the curve as the firmware is told it */
     uint8_t cells_of[BQ76PL536_MAX_DEVICES];
     ps_place pack_at; /**< for errors that concern the whole configuration */
@@ -123,11 +132,14 @@ int ps_expect_parse(ps_expect *x, const ps_scenario *s, const char *text, ps_pla
 /** The latest moment an expectation looks at; 0 for those judged at the end. */
 uint64_t ps_expect_deadline(const ps_expect *x);
 
-/** Defaults of a chemistry for the pack controller and the driver; s->devices, cells and period are set. */
+/** Defaults of a chemistry for the pack controller and the driver; all of [pack] and s->period are set. */
 void ps_limits_default(ps_scenario *s, bool lfp);
 /** All of [limits], then checks the whole configuration with the firmware's own validators. 0, or -1 naming
  * the field. */
 int ps_limits_build(ps_scenario *s, ps_ini *ini, ps_error *e);
+/** The same for a bq769x0: defaults of the driver, and its validator. */
+void ps_afe_default(ps_scenario *s, bool lfp);
+bq_status ps_afe_check(const ps_scenario *s);
 /** Name of key i of [limits] for help; NULL past the end. */
 const char *ps_limit_name(int i);
 /** Fields of the firmware that follow from [pack] and cannot be given in [limits]. */

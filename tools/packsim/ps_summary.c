@@ -71,11 +71,12 @@ static void print_or_none(FILE *to, const char *name, double value, int places)
 bool ps_summary(FILE *to, const ps_run *u, bool quiet)
 {
     const ps_scenario *s = u->rig->s;
-    const sim_misuse *misuse = sim_pl_misuse(&u->rig->pl);
+    const sim_misuse *misuse = u->rig->monitor->misuse(u->rig);
     int held = ps_judge_held(u->judge);
     print_expects(to, u, quiet);
     print_misuse(to, misuse);
-    (void)fprintf(to, "monitor: bq76pl536\ndevices found: %d\ncells: %d\n", u->found, s->cells);
+    (void)fprintf(to, "monitor: %s\ndevices found: %d\ncells: %d\n",
+                  s->part != NULL ? s->part->name : "bq76pl536", u->found, s->cells);
     (void)fprintf(to, "simulated: %.3f s\nscans: %llu\n", (double)u->simulated / 1e9,
                   (unsigned long long)u->scans);
     (void)fprintf(to, "bus bytes per scan: %.1f\n", u->bytes_per_scan);

@@ -119,7 +119,12 @@ refused 'late expectation' 's/5 s$/15 s/' 20 'beyond the end'
 refused 'missing curve' 's/^chemistry.*/chemistry = nowhere.csv/' 6 'nowhere.csv'
 refused 'missing current' 's/^current_a.*/file = nowhere.csv/' 15 'nowhere.csv'
 refused 'two loads' 's/^current_a.*/current_a = 1\nfile = x.csv/' 16 'exclude each other'
-refused 'other monitor' 's/bq76pl536/bq7694003/' 3 'not supported yet'
+refused 'stack keys with another monitor' 's/bq76pl536/bq7694003/' 4 'devices concerns a bq76pl536'
+refused 'unknown size' 's/bq76pl536/bq769/' 3 'unknown part bq769'
+refused 'unknown variant' 's/bq76pl536/bq7694004/' 3 'unknown part bq7694004'
+refused 'base number alone' 's/bq76pl536/bq76940/' 3 'unknown part bq76940'
+refused 'freeze of a stack' 's/^soc_percent.*/adc_freeze = 3 s/' 7 'adc_freeze concerns a bq769x0'
+refused 'AFE limit for a stack' 's/^cell_ov_mv.*/ov_mv = 4200/' 10 'unknown key ov_mv'
 refused 'unknown monitor' 's/bq76pl536/bq1/' 3 'unknown part'
 refused 'too many cells' 's/^cells.*/cells = 13/' 5 'cannot be shared'
 refused 'limit out of range' 's/^cell_ov_mv.*/cell_ov_mv = 9000/' 10 'cell_ov_mv'
@@ -139,6 +144,35 @@ refused 'no equals sign' 's/^soc_percent.*/soc_percent 50/' 7 'key = value'
 refused 'given twice' 's/^soc_spread_percent.*/soc_percent = 3/' 8 'twice'
 refused 'before a section' 's/^\[pack\]//' 3 'before the first'
 refused 'bad period' 's/^period.*/period = 1500 us/' 13 'period'
+
+# the same for a pack with a bq769x0
+refused_afe() {
+    name=$1 expression=$2 line=$3 text=$4
+    good | sed 's/bq76pl536/bq7693003/; s/^devices.*/shunt_mohm = 5/; s/^cells.*/cells = 8/; s/^discovered 2/discovered 1/' >afe.ini
+    sed "$expression" afe.ini >bad.ini
+    "$packsim" afe.ini --quiet --duration 1s >out 2>err || fail "$name: the good one is refused: $(cat err)"
+    rm -f never.csv
+    "$packsim" bad.ini --csv never.csv >out 2>err
+    status=$?
+    [ $status -eq 2 ] || fail "$name: exit status $status"
+    grep -q "^bad.ini:$line: .*$text" err || fail "$name: no 'bad.ini:$line: ...$text' in: $(cat err)"
+    [ ! -s out ] || fail "$name: printed $(head -1 out)"
+    [ ! -e never.csv ] || fail "$name: wrote a table"
+}
+for n in 1 5 11 15; do
+    refused_afe "$n cells on a bq76930" "s/^cells.*/cells = $n/" 5 "$n cells cannot be connected to a bq7693003"
+done
+refused_afe 'cells on the smallest' 's/bq7693003/bq7692003/' 5 '8 cells cannot be connected to a bq7692003'
+refused_afe 'cells on the largest' 's/bq7693003/bq7694006/' 5 '8 cells cannot be connected to a bq7694006'
+refused_afe 'eprom' 's/^soc_percent.*/eprom = fast/' 7 'eprom concerns a bq76pl536'
+refused_afe 'stack limit' 's/^cell_ov_mv.*/cov_mv = 3700/' 10 'unknown key cov_mv'
+refused_afe 'shunt too large' 's/^shunt.*/shunt_mohm = 200/' 4 'shunt_mohm'
+refused_afe 'overcurrent limit without a code' 's/^cell_ov_mv.*/ocd_ma = 500/' 10 'ocd_ma'
+refused_afe 'recovery above the limit' 's/^cell_ov_mv.*/ov_recover_mv = 3800/' 10 'ov_recover_mv'
+refused_afe 'short circuit below overcurrent' 's/^cell_ov_mv.*/ocd_ma = 20000\nscd_ma = 9000/' 1[01] '_ma'
+refused_afe 'stack action' 's/^6 s.*/6 s = wire 2 open/' 18 'wire concerns a bq76pl536 stack'
+refused_afe 'bus of the stack' 's/^6 s.*/6 s = spi flip 0.1/' 18 'spi concerns a bq76pl536 stack'
+refused_afe 'no contactor' 's/^6 s.*/6 s = contactor weld/' 18 'contactor concerns a bq76pl536 stack'
 
 option_refused 'No such file' nowhere.ini
 option_refused 'unknown key nonsense' good.ini --set run.nonsense=1

@@ -14,6 +14,7 @@ void setUp(void)
     memset(&error, 0, sizeof error);
     scenario.devices = 4;
     scenario.cells = 22;
+    scenario.sensors = 8;
 }
 
 void tearDown(void)
@@ -95,7 +96,7 @@ static void test_every_action(void)
     TEST_ASSERT_TRUE(v.kind == PS_ACT_WIRE && v.n == 0 && v.on);
     TEST_ASSERT_FALSE(event("wire 22 closed").on);
     v = event("spi flip 1e-4");
-    TEST_ASSERT_TRUE(v.kind == PS_ACT_SPI_FLIP);
+    TEST_ASSERT_TRUE(v.kind == PS_ACT_FLIP);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-4, v.value);
     TEST_ASSERT_TRUE(event("bus dead ff").on);
     TEST_ASSERT_FALSE(event("bus dead 00").on);
@@ -151,6 +152,64 @@ static void test_bad_actions_are_refused_with_their_place(void)
     ps_event v;
     memset(&error, 0, sizeof error);
     TEST_ASSERT_EQUAL(-1, ps_event_parse(&v, &scenario, "1 fortnight", "mend", (ps_place){"f", 3}, &error));
+}
+
+/* The same scenario on a bq7694003: 13 cells, three thermistors. */
+static void use_afe(void)
+{
+    scenario.part = sim_x0_find_part("bq7694003");
+    scenario.devices = 1;
+    scenario.cells = 13;
+    scenario.sensors = 3;
+}
+
+static void test_every_action_of_an_afe(void)
+{
+    use_afe();
+    ps_event v = event("i2c flip 1e-4");
+    TEST_ASSERT_TRUE(v.kind == PS_ACT_FLIP);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-4, v.value);
+    TEST_ASSERT_TRUE(event("afe xready").kind == PS_ACT_XREADY);
+    TEST_ASSERT_TRUE(event("afe alert").kind == PS_ACT_ALERT);
+    v = event("device 1 off");
+    TEST_ASSERT_TRUE(v.kind == PS_ACT_DEVICE && v.n == 1 && !v.on);
+    v = event("cell 13 volts 4.3");
+    TEST_ASSERT_TRUE(v.kind == PS_ACT_CELL_VOLTS && v.n == 13);
+    v = event("sensor 3 celsius 70");
+    TEST_ASSERT_TRUE(v.kind == PS_ACT_SENSOR && v.n == 3);
+    TEST_ASSERT_TRUE(event("bus dead ff").kind == PS_ACT_BUS_DEAD);
+    TEST_ASSERT_TRUE(event("mcu reset").kind == PS_ACT_MCU_RESET);
+}
+
+static void test_actions_that_make_no_sense_with_an_afe_are_refused(void)
+{
+    static const char *const bad[] = {"cell 14 volts 3",
+                                      "sensor 4 celsius 20",
+                                      "device 2 off",
+                                      "break above 1",
+                                      "mend",
+                                      "wire 1 open",
+                                      "spi flip 0.1",
+                                      "contactor weld",
+                                      "i2c flip 1.5",
+                                      "i2c flop 0.1",
+                                      "i2c flip",
+                                      "afe panic",
+                                      "afe",
+                                      "afe xready twice"};
+    use_afe();
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        ps_event v;
+        memset(&error, 0, sizeof error);
+        TEST_ASSERT_EQUAL_MESSAGE(
+            -1, ps_event_parse(&v, &scenario, "1 s", bad[i], (ps_place){"f.ini", 3}, &error), bad[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(0, strncmp(error.text, "f.ini:3: ", 9), error.text);
+    }
+    ps_event v;
+    memset(&error, 0, sizeof error);
+    (void)ps_event_parse(&v, &scenario, "1 s", "break above 1", (ps_place){"f.ini", 3}, &error);
+    TEST_ASSERT_EQUAL_STRING("f.ini:3: break concerns a bq76pl536 stack; this pack has a bq7694003",
+                             error.text);
 }
 
 static void test_bad_expectations_are_refused_with_their_place(void)
@@ -218,6 +277,8 @@ int main(void)
     RUN_TEST(test_numbers_are_decimal_and_alone);
     RUN_TEST(test_every_action);
     RUN_TEST(test_bad_actions_are_refused_with_their_place);
+    RUN_TEST(test_every_action_of_an_afe);
+    RUN_TEST(test_actions_that_make_no_sense_with_an_afe_are_refused);
     RUN_TEST(test_bad_expectations_are_refused_with_their_place);
     RUN_TEST(test_every_fault_and_state_has_its_name);
     return UNITY_END();

@@ -131,7 +131,7 @@ static void test_world_actions_reach_the_chips(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1820.0 / 31994.0, sim_pl_ts_ratio(&b->rig.pl, 2, 2));
     act((ps_event){.kind = PS_ACT_DEVICE, .n = 2, .on = false});
     TEST_ASSERT_FALSE(sim_pl_supply(&b->rig.pl, 2));
-    act((ps_event){.kind = PS_ACT_SPI_FLIP, .value = 0.25});
+    act((ps_event){.kind = PS_ACT_FLIP, .value = 0.25});
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, sim_pl_bus_fault(&b->rig.pl)->flip_probability);
     act((ps_event){.kind = PS_ACT_BUS_DEAD, .on = false});
     TEST_ASSERT_EQUAL(1, sim_pl_bus_fault(&b->rig.pl)->dead);
