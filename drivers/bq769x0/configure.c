@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Configuration, its comparison in service, and SHIP (X0-SEQ-13..20, X0-SEQ-47). */
 #include "x0_internal.h"
-#include <string.h>
 
 void x0_image(const bq769x0 *d, uint8_t image[6])
 {
@@ -24,35 +23,37 @@ static bq_status encode(bq769x0 *d)
     return st;
 }
 
-/* FETs (unless they are to be kept), balancing and delay bypass off; then the limits; then the converter. */
+/* FETs (unless they are to be kept), balancing and delay bypass off; then the limits; then the converter. In
+ * service SYS_STAT is left alone: a fault that came meanwhile belongs to the fault service. */
 bq_status x0_job_configure(bq769x0 *d, bq769x0_frame *f)
 {
     bq_status st;
     SEQ_BEGIN(f)
     st = encode(d);
     if (st != BQ_OK) {
-        return st; /* the FETs of a part that cannot be protected stay off after a boot */
+        return st;
     }
     SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_CTRL2, 1);
     d->want_fets =
         d->config.keep_fets && d->state == X0_STATE_NONE ? (uint8_t)(d->data[0] & BQ769X0_CTRL2_FETS) : 0u;
-    d->data[0] = d->want_fets;
-    SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL2, 1);
-    memset(d->data, 0, 3);
-    SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_CELLBAL1, x0_groups(d));
-    x0_image(d, d->data);
-    d->data[2] = 0; /* the low nibble of PROTECT3 is kept as it is found (X0-AMB-88) */
-    SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_PROTECT3, 1);
-    f->x = d->data[0] & 0x0fu;
-    d->achieved.protect3 = (uint8_t)((d->achieved.protect3 & 0xf0u) | f->x);
+    d->shadow2 = d->want_fets;
+    d->balance = 0;
+    SEQ_TRY(d, f, X0_JOB_OFF, 0, 0);
+    SEQ_TRY(d, f, X0_JOB_AGREE, BQ769X0_PROTECT3, 1); /* its low nibble stays as found (X0-AMB-88) */
+    d->achieved.protect3 = (uint8_t)((d->achieved.protect3 & 0xf0u) | (d->data[0] & 0x0fu));
     x0_image(d, d->data);
     SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_PROTECT1, 6);
     d->data[0] = d->shadow1;
     SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL1, 1);
-    SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
-    d->data[0] &= BQ769X0_STAT_CLEAR;
-    SEQ_TRY(d, f, X0_JOB_WRITE, BQ769X0_SYS_STAT, 1);
-    d->shadow2 = (uint8_t)(BQ769X0_CTRL2_CC_EN | d->want_fets);
+    if (d->state == X0_STATE_NONE) {
+        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
+        /* XREADY takes seconds, in the fault service */
+        f->x = d->data[0] & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
+        if (f->x != 0u) {
+            SEQ_TRY(d, f, X0_JOB_CLEAR, f->x, 0);
+        }
+    }
+    d->shadow2 |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
     d->data[0] = d->shadow2;
     SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL2, 1);
     d->cc_ms = d->scrub_ms = d->temp_ms = d->now_ms;
@@ -61,27 +62,48 @@ bq_status x0_job_configure(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
-/* Differences between 0x01..0x0b as read and as they should be. FET bits the chip took back itself are no
- * difference. */
+/* Whether 0x01..0x0b as read are not as they should be. */
 static bool differs(const bq769x0 *d)
 {
-    uint8_t image[6];
-    const uint8_t *r = d->data - 1; /* r[reg] */
-    x0_image(d, image);
-    for (unsigned g = 0; g < x0_groups(d); g++) {
-        if ((r[1u + g] & 0x1fu) != (d->balance >> (5u * g) & 0x1fu)) {
-            return true;
-        }
+    uint8_t want[11];
+    bool any = false;
+    for (unsigned g = 0; g < 3u; g++) {
+        want[g] = (uint8_t)((unsigned)d->balance >> (5u * g) & 0x1fu);
     }
-    return (r[4] & BQ769X0_CTRL1_MASK) != d->shadow1 || (r[5] & 0xc0u) != (d->shadow2 & 0xc0u) ||
-           (r[5] & BQ769X0_CTRL2_FETS & ~(unsigned)d->shadow2) != 0u || memcmp(&r[6], image, 6) != 0;
+    want[3] = d->shadow1;
+    want[4] = d->shadow2;
+    x0_image(d, want + 5);
+    for (unsigned i = 0; i < sizeof want; i++) {
+        any = any || !x0_same(i + 1u, d->data[i], want[i]);
+    }
+    return any;
 }
 
+/* Twice different before it counts: one look may be damaged, or fall between a fault and its service. */
 bq_status x0_job_compare(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_CELLBAL1, 11);
-    return differs(d) ? BQ_E_VERIFY : BQ_OK;
+    for (f->tries = 0; f->tries < 2u; f->tries++) {
+        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_CELLBAL1, 11);
+        if (!differs(d)) {
+            d->shadow2 &= (uint8_t)(d->data[4] | ~BQ769X0_CTRL2_FETS); /* the next apply turns them on again */
+            return BQ_OK;
+        }
+    }
+    return BQ_E_VERIFY;
+    SEQ_END;
+}
+
+/* Reads, configures and waits for data as after a boot (X0-SEQ-20, X0-AMB-16). */
+bq_status x0_job_reload(bq769x0 *d, bq769x0_frame *f)
+{
+    SEQ_BEGIN(f)
+    x0_bump(&d->stats.recoveries);
+    x0_invalidate(d, 0);
+    SEQ_TRY(d, f, X0_JOB_TRIM, 0, 0);
+    SEQ_TRY(d, f, X0_JOB_CONFIGURE, 0, 0);
+    d->data_ms = d->now_ms + x0_first_ms(d) + X0_SCAN_MS;
+    return BQ_OK;
     SEQ_END;
 }
 
@@ -94,12 +116,7 @@ bq_status x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
         bool reset = d->data[3] == BQ769X0_CTRL1_ADC_EN && d->data[8] == 0xacu && d->data[9] == 0x97u &&
                      d->data[10] == 0u;
         d->faults |= reset ? BQ_F_RESET : BQ_F_CONFIG;
-        d->balance = 0;
-        x0_bump(&d->stats.recoveries);
-        x0_invalidate(d, 0);
-        SEQ_TRY(d, f, X0_JOB_TRIM, 0, 0);
-        SEQ_TRY(d, f, X0_JOB_CONFIGURE, 0, 0);
-        d->boot_ms = d->now_ms;
+        SEQ_TRY(d, f, X0_JOB_RELOAD, 0, 0);
         return BQ_OK;
     }
     d->scrub_ms = d->now_ms;
@@ -107,22 +124,30 @@ bq_status x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
-/* FETs, counter and balancing off, then the pattern 00, 01, 10 with nothing in between, then silence
- * (X0-SEQ-47). */
+/* FETs, counter and balancing off, TS1 low, then the pattern 00, 01, 10 with nothing in between, then silence,
+ * twice, because one silence may be a disturbed address (X0-SEQ-47). */
 bq_status x0_job_ship(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     d->want_fets = d->shadow2 = 0;
     d->balance = 0;
     SEQ_CALL(d, f, X0_JOB_OFF, 0, 0);
+    if (d->result != BQ_OK && d->state == X0_STATE_READY) {
+        return d->result;
+    }
+    x0_drive(d, BQ_LINE_AFE_BOOT, false);
     for (f->tries = 0; f->tries < X0_TRIES; f->tries++) {
         for (f->i = 0; f->i < 3u; f->i++) {
-            d->data[0] = (uint8_t)((d->shadow1 & BQ769X0_CTRL1_MASK & ~3u) | f->i);
+            d->data[0] = (uint8_t)(d->shadow1 | f->i);
             SEQ_SEND(f, x0_send_write(d, BQ769X0_SYS_CTRL1, 1));
         }
-        SEQ_WAIT(d, f, 10000u);
-        SEQ_SEND(f, x0_send_read(d, BQ769X0_SYS_STAT, 1));
-        if (d->transfer == BQ_E_NACK) {
+        f->x = 0;
+        for (f->i = 0; f->i < 2u; f->i++) {
+            SEQ_WAIT(d, f, 10000u);
+            SEQ_SEND(f, x0_send_read(d, BQ769X0_SYS_STAT, 1));
+            f->x |= (uint8_t)(d->transfer != BQ_E_NACK);
+        }
+        if (f->x == 0u) {
             d->state = X0_STATE_SHIP;
             x0_invalidate(d, 0);
             return BQ_OK;

@@ -22,14 +22,16 @@ void x0_invalidate(bq769x0 *d, uint16_t fault)
     d->faults |= fault;
 }
 
-/* BAT must be the sum of the codes of some moment near this one (X0-BAT-05); cells may be of two scans. */
+/* BAT is a quarter of the sum of all codes of the same scan, within 1 (X0-BAT-05). A block read across a
+ * publication fails this too: it is then read again. */
 static bool plausible(const bq769x0 *d)
 {
-    uint32_t sum = 0;
+    uint32_t sum = 0, bat;
     for (unsigned i = 0; i < d->config.inputs; i++) {
         sum += d->code[i];
     }
-    return sum != 0u && d->bat_code != 0u && d->bat_code != 0xffffu;
+    bat = d->bat_code;
+    return sum != 0u && bat <= sum / 4u + 1u && bat + 1u >= sum / 4u;
 }
 
 /* `block` is what 0x0c..0x31 hold, in the order of the registers. */
@@ -45,34 +47,47 @@ void x0_take_picture(bq769x0 *d, const uint8_t *block)
     changed |= (unsigned)(pair(tail) ^ d->bat_code);
     d->bat_code = pair(tail);
     for (unsigned i = 0; i < x0_groups(d); i++) {
+        changed |= (unsigned)pair(tail + 2u + 2u * i) ^ d->ts_code[i];
         d->ts_code[i] = pair(tail + 2u + 2u * i) & 0x3fffu;
     }
-    d->same = changed != 0u ? 0u : d->same != UINT16_MAX ? (uint16_t)(d->same + 1u) : d->same;
+    if (changed != 0u) {
+        d->same = 0;
+    } else if (d->now_ms - d->same_ms >= X0_SCAN_MS && d->same != UINT16_MAX) {
+        d->same++; /* counted once per scan of the part, however often the host looks */
+        d->same_ms = d->now_ms;
+    }
     d->valid = plausible(d) && (d->stat & BQ769X0_STAT_XREADY) == 0u;
+    if (!plausible(d)) {
+        x0_bump(&d->stats.implausible);
+    }
     d->measured = d->measured || d->valid;
-    d->temp_valid = d->valid && d->now_ms - d->temp_ms >= 2250u;
+    d->temp_valid = d->valid && d->now_ms - d->temp_ms >= X0_TEMP_MS;
     d->balanced = d->balance;
     d->picture_ms = d->now_ms;
     d->picture_us = d->now_us;
     d->sequence++;
 }
 
-/* One fetched result; windows that the clock says were lost are filled with the mean of their neighbours. */
+/* One fetched result. Its time is measured by the host's clock (X0-AMB-99); windows that the clock says were
+ * lost are filled with the mean of their neighbours (X0-SEQ-26). */
 void x0_take_current(bq769x0 *d, const uint8_t *cc)
 {
     int16_t code = (int16_t)pair(cc);
-    uint32_t windows = (d->now_ms - d->cc_ms + X0_SCAN_MS / 2u) / X0_SCAN_MS;
+    uint32_t ms = d->now_ms - d->cc_ms, windows = (ms + X0_SCAN_MS / 2u) / X0_SCAN_MS, own = ms;
     int32_t ma, mean;
     if (d->config.invert_current) {
         code = (int16_t)(code == INT16_MIN ? INT16_MAX : -code);
     }
     ma = bq769x0_current_ma(code, d->config.shunt_uohm);
     mean = (bq769x0_current_ma(d->cc_code, d->config.shunt_uohm) + ma) / 2;
-    d->charge.uas += (int64_t)ma * (int32_t)X0_SCAN_MS;
-    if (windows > 1u && d->charge.results != 0u) {
-        d->charge.missed += windows - 1u;
-        d->charge.uas += (int64_t)mean * (int32_t)((windows - 1u) * X0_SCAN_MS);
+    if (windows > 1u) {
+        own = ms / windows;
+        if (d->charge.results != 0u) {
+            d->charge.missed += windows - 1u;
+            d->charge.uas += (int64_t)mean * (int32_t)(ms - own);
+        }
     }
+    d->charge.uas += (int64_t)ma * (int32_t)own;
     x0_bump(&d->charge.results);
     d->cc_code = code;
     d->cc_ms = d->now_ms;
@@ -90,6 +105,8 @@ static void fill_cells(const bq769x0 *d, bq_sample *s)
             c->quality = d->valid && !dead ? BQ_Q_VALID : dead && d->valid ? BQ_Q_OPEN_WIRE : BQ_Q_COMM;
             if (d->code[i] == 0x3fffu) {
                 c->quality = BQ_Q_RANGE;
+            } else if (c->quality == BQ_Q_VALID && (c->mv < 2000u || c->mv > 5000u)) {
+                c->quality |= BQ_Q_RANGE; /* outside what the accuracy is stated for (X0-ADC-09) */
             }
         }
     }
@@ -111,6 +128,9 @@ static void fill_temps(const bq769x0 *d, bq_sample *s)
             st = st == BQ_OK ? bq_thermistor_dc(d->config.thermistor, ohms, &t->dc) : st;
         }
         t->quality = !d->temp_valid ? BQ_Q_COMM : st == BQ_OK ? BQ_Q_VALID : BQ_Q_SENSOR;
+        if (t->quality == BQ_Q_VALID && (d->ts_code[i] < 785u || d->ts_code[i] > 7853u)) {
+            t->quality |= BQ_Q_RANGE; /* X0-TS-07 */
+        }
     }
     s->temp_count = (uint16_t)n;
 }
@@ -131,6 +151,11 @@ static void fill_module(const bq769x0 *d, bq_module_reading *m)
     memset(m, 0, sizeof *m);
     m->age_ms = d->measured ? d->now_ms - d->picture_ms + X0_SCAN_MS : UINT32_MAX;
     m->faults = d->faults;
+    for (unsigned i = 0; d->valid && i < d->config.inputs; i++) {
+        if (((unsigned)d->in_use >> i & 1u) != 0u && d->code[i] < BQ769X0_UV_MINQUAL) {
+            m->faults |= BQ_F_OPEN_WIRE; /* dead cell or broken wire: the part itself ignores it (X0-UV-08) */
+        }
+    }
     for (unsigned i = 0; i < d->config.inputs; i++) {
         if ((d->in_use >> i & 1u) != 0u) {
             m->stack_mv += (uint32_t)x0_cell_mv(d, i);
@@ -159,13 +184,14 @@ bq_status bq769x0_sample(bq769x0 *d, bq_sample *s)
     s->t_us = d->picture_us;
     s->current_ma = bq769x0_current_ma(d->cc_code, d->config.shunt_uohm);
     s->current_age_ms = d->charge.results != 0u ? d->now_ms - d->cc_ms : UINT32_MAX;
-    s->current_valid = d->charge.results != 0u && s->current_age_ms < 600u;
+    s->current_valid = d->charge.results != 0u && s->current_age_ms < 600u && d->cc_code >= -31990 &&
+                       d->cc_code <= 31990; /* saturated beyond (X0-CC-11) */
     return BQ_OK;
 }
 
 bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
 {
-    uint32_t sum = 0, factor;
+    uint32_t sum = 0;
     if (!d->valid) {
         return BQ_E_STALE;
     }
@@ -178,8 +204,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
     if (sum == 0u || stack_mv > 110000u || stack_mv * 100u < sum * 97u || stack_mv * 100u > sum * 103u) {
         return BQ_E_RANGE; /* X0-AMB-20 */
     }
-    factor = (stack_mv * 32768u + sum / 2u) / sum;
-    d->gain2_q15 = (uint16_t)factor;
+    d->gain2_q15 = (uint16_t)((stack_mv * 32768u + sum / 2u) / sum);
     for (unsigned i = 0; i < d->config.inputs; i++) {
         d->calibrated_mv[i] = (uint16_t)x0_cell_mv(d, i);
     }

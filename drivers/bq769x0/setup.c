@@ -137,14 +137,20 @@ static uint16_t inputs_of(const bq769x0 *d, const uint32_t *cells)
 
 bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action)
 {
-    bq_status st = begin_ready(d, X0_JOB_APPLY);
+    bq_status st = action != NULL ? begin_ready(d, X0_JOB_APPLY) : BQ_E_ARG;
     if (st == BQ_OK) {
         d->want_fets = (uint8_t)((action->charge_on ? BQ769X0_CTRL2_CHG_ON : 0u) |
                                  (action->discharge_on ? BQ769X0_CTRL2_DSG_ON : 0u));
-        d->balance = inputs_of(d, action->balance);
+        d->want_balance = inputs_of(d, action->balance);
         d->served_ms = d->now_ms;
     }
     return st;
+}
+
+bool bq769x0_alert_pending(const bq769x0 *d)
+{
+    bool level = true;
+    return d->gpio.ops == NULL || d->gpio.ops->read(d->gpio.ctx, BQ_LINE_ALERT, &level) != BQ_OK || level;
 }
 
 const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d)

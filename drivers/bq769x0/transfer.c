@@ -2,6 +2,7 @@
 /* Transactions of the bq769x0 with and without CRC, and the jobs that repeat them (X0-I2C, X0-SEQ-48..52). */
 #include "bqhost/crc8.h"
 #include "x0_internal.h"
+#include <string.h>
 
 static bq_status start(bq769x0 *d, size_t segments)
 {
@@ -72,16 +73,32 @@ bq_status x0_reply(bq769x0 *d)
     return BQ_OK;
 }
 
-/* What to do between two tries: 1 ms after silence, recovery of a stuck bus (X0-SEQ-51, X0-SEQ-52). */
-static bq_status between_tries(bq769x0 *d, bq_status st)
+/* What to do between two tries: after silence 1 ms, after anything that may be a stuck bus its recovery, and
+ * then the scrub (X0-SEQ-51, X0-SEQ-52, X0-SEQ-53). `tries` = failures so far. */
+static bq_status between_tries(bq769x0 *d, bq_status st, unsigned tries)
 {
     x0_bump(&d->stats.retries);
-    if ((st == BQ_E_ARBITRATION || st == BQ_E_TIMEOUT || st == BQ_E_BUS) && d->i2c.ops->recover != NULL) {
-        (void)d->i2c.ops->recover(d->i2c.ctx);
+    if (st != BQ_E_CRC && (st != BQ_E_NACK || tries >= X0_TRIES)) {
+        x0_recover(d);
     }
     return x0_wait(d, 1000u);
 }
 
+void x0_recover(bq769x0 *d)
+{
+    if (d->i2c.ops->recover != NULL) {
+        (void)d->i2c.ops->recover(d->i2c.ctx);
+    }
+    d->scrub_ms = d->now_ms - X0_SCRUB_MS;
+}
+
+/* A silent part is asked once more after the bus was recovered. */
+static bool gives_up(bq769x0_frame *f, bq_status st)
+{
+    return ++f->tries >= X0_TRIES + (st == BQ_E_NACK ? 1u : 0u);
+}
+
+/* Every try begins with the pointer (X0-SEQ-48): the part's own has moved on. */
 bq_status x0_job_read(bq769x0 *d, bq769x0_frame *f)
 {
     bq_status st;
@@ -89,11 +106,26 @@ bq_status x0_job_read(bq769x0 *d, bq769x0_frame *f)
     for (;;) {
         SEQ_SEND(f, x0_send_read(d, f->reg, f->n));
         st = x0_reply(d);
-        if (st == BQ_OK || ++f->tries >= X0_TRIES) {
+        if (st == BQ_OK || gives_up(f, st)) {
             return st;
         }
-        SEQ_SEND(f, between_tries(d, st));
+        SEQ_SEND(f, between_tries(d, st, f->tries));
     }
+    SEQ_END;
+}
+
+/* The same registers twice running, for what is read once and used for ever (X0-SEQ-11). */
+bq_status x0_job_agree(bq769x0 *d, bq769x0_frame *f)
+{
+    SEQ_BEGIN(f)
+    for (f->tries = 0; f->tries < 4u; f->tries++) {
+        SEQ_TRY(d, f, X0_JOB_READ, f->reg, f->n);
+        if (f->tries != 0u && memcmp(d->data, d->data + X0_WANTED, f->n) == 0) {
+            return BQ_OK;
+        }
+        memcpy(d->data + X0_WANTED, d->data, f->n);
+    }
+    return BQ_E_IMPLAUSIBLE;
     SEQ_END;
 }
 
@@ -104,37 +136,59 @@ bq_status x0_job_write(bq769x0 *d, bq769x0_frame *f)
     for (;;) {
         SEQ_SEND(f, x0_send_write(d, f->reg, f->n));
         st = x0_reply(d);
-        if (st == BQ_OK || ++f->tries >= X0_TRIES) {
+        if (st == BQ_OK || gives_up(f, st)) {
             return st;
         }
         x0_bump(&d->stats.write_errors);
-        SEQ_SEND(f, between_tries(d, st));
+        SEQ_SEND(f, between_tries(d, st, f->tries));
     }
     SEQ_END;
 }
 
-/* Bits of a register that read back as written. */
-static uint8_t compared(unsigned reg)
+/* Writes `reg` (bits) to SYS_STAT; after a failure only what still reads as set is written again, so that an
+ * event that came in between is not cleared unseen (X0-SEQ-50, X0-BIT-09). */
+bq_status x0_job_clear(bq769x0 *d, bq769x0_frame *f)
 {
-    static const uint8_t mask[] = {0x1f, 0x1f, 0x1f, 0x1f, 0xc3, 0x9f, 0x7f, 0xf0, 0xff, 0xff, 0x3f};
-    return mask[reg - 1u];
+    bq_status st;
+    SEQ_BEGIN(f)
+    for (;;) {
+        d->data[0] = f->reg;
+        SEQ_SEND(f, x0_send_write(d, BQ769X0_SYS_STAT, 1));
+        st = x0_reply(d);
+        if (st == BQ_OK || gives_up(f, st)) {
+            return st;
+        }
+        SEQ_SEND(f, between_tries(d, st, f->tries));
+        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
+        f->reg &= d->data[0];
+        if (f->reg == 0u) {
+            return BQ_OK;
+        }
+    }
+    SEQ_END;
 }
 
-/* Writes up to six registers from d->data, reads them back and compares (X0-SEQ-16). d->bus keeps what was
- * wanted. */
+/* Whether register `reg` reads as it should: reserved bits are masked (X0-BIT-03), and a FET that the chip
+ * took back is no difference: whoever turned it on looks himself. */
+bool x0_same(unsigned reg, uint8_t read, uint8_t wanted)
+{
+    static const uint8_t mask[] = {0x1f, 0x1f, 0x1f, 0x1f, 0xc0, 0x9f, 0x7f, 0xf0, 0xff, 0xff, 0x3f};
+    uint8_t extra = reg == BQ769X0_SYS_CTRL2 ? (uint8_t)(read & ~wanted & BQ769X0_CTRL2_FETS) : 0u;
+    return (((read ^ wanted) & mask[reg - 1u]) | extra) == 0;
+}
+
+/* Writes up to six registers from d->data, reads them back and compares (X0-SEQ-16). d->data holds what was
+ * read. */
 bq_status x0_job_set(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
+    memcpy(d->data + X0_WANTED, d->data, f->n);
     for (;;) {
-        for (unsigned i = 0; i < f->n; i++) {
-            d->data[34u + i] = d->data[i]; /* beyond what a read-back of six overwrites */
-        }
         SEQ_TRY(d, f, X0_JOB_WRITE, f->reg, f->n);
         SEQ_TRY(d, f, X0_JOB_READ, f->reg, f->n);
         f->x = 0;
         for (unsigned i = 0; i < f->n; i++) {
-            f->x |= (uint8_t)((d->data[i] ^ d->data[34u + i]) & compared(f->reg + i));
-            d->data[i] = d->data[34u + i];
+            f->x |= (uint8_t)!x0_same(f->reg + i, d->data[i], d->data[X0_WANTED + i]);
         }
         if (f->x == 0u) {
             return BQ_OK;
@@ -143,6 +197,7 @@ bq_status x0_job_set(bq769x0 *d, bq769x0_frame *f)
         if (++f->tries >= X0_TRIES) {
             return BQ_E_VERIFY;
         }
+        memcpy(d->data, d->data + X0_WANTED, f->n);
     }
     SEQ_END;
 }

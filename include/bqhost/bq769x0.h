@@ -47,6 +47,8 @@ typedef struct bq769x0_config {
     uint16_t load_settle_ms; /**< CHG off until the first look at LOAD_PRESENT; 0 = 100 (X0-LOAD-05) */
     uint16_t frozen_scans;   /**< identical pictures in a row that count as a stopped converter; 0 = never */
     uint8_t balance_timer_s; /**< balancing ends when no scan or apply came for so long; 0 = 4 (X0-CB-13) */
+    uint8_t balance_max;     /**< switches on at the same time; 0 = no limit (X0-SEQ-42) */
+    bool counter_off;        /**< leave the coulomb counter off: current by bq769x0_begin_oneshot() alone */
     bool balance_across_groups; /**< allow 5+6 and 10+11 together (X0-AMB-61) */
     bool keep_fets;             /**< warm start: leave the FETs of a running part as they are */
 } bq769x0_config;
@@ -98,12 +100,16 @@ bq_status bq769x0_begin_self_test(bq769x0 *d);
 /** Begins SHIP entry; ends with BQ_OK when the part no longer answers, BQ_E_VERIFY if it still does after
  * three tries. */
 bq_status bq769x0_begin_ship(bq769x0 *d);
-/** Begins one conversion of the coulomb counter while it is otherwise off (X0-SEQ-46); the result is in the
- * next sample. */
+/** Begins one conversion of the coulomb counter (X0-SEQ-46); the result is in the next sample. A counter that
+ * runs is stopped for it and runs again afterwards. Ends with BQ_OK, BQ_E_TIMEOUT after three attempts without
+ * a result, or a bus error; after an error the next scrub restores the configuration. */
 bq_status bq769x0_begin_oneshot(bq769x0 *d);
 /** See bq_afe_ops.poll. */
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us);
-/** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. */
+/** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. Chip faults in
+ * modules[0].faults: OCD = BQ_F_OVERCURRENT, SCD = BQ_F_SHORT, OV, UV as named, the ALERT override = BQ_F_CHAIN (what
+ * hangs on the ALERT line), DEVICE_XREADY = BQ_F_MEMORY, and after it came back three times BQ_F_DEFECTIVE, an input
+ * below 0x0518 that should carry a cell = BQ_F_OPEN_WIRE. They stand until the release conditions held long enough. */
 bq_status bq769x0_sample(bq769x0 *d, bq_sample *sample);
 
 /** GAIN2 calibration (X0-SEQ-45): `stack_mv` was measured by the host at rest; every cell is scaled by it
@@ -116,6 +122,11 @@ bool bq769x0_calibration_due(const bq769x0 *d);
 const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d);
 const bq769x0_charge *bq769x0_get_charge(const bq769x0 *d);
 void bq769x0_charge_reset(bq769x0 *d);
+
+/** True while ALERT is high: something in SYS_STAT wants a scan. A level, so a fault that comes while another
+ * one is being served is not lost (X0-ALERT-07). Always true on a board without the line: poll every 250 ms
+ * then, and back the line up by the same poll. Costs one pin read. */
+bool bq769x0_alert_pending(const bq769x0 *d);
 
 /** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). */
 void bq769x0_unlock(bq769x0 *d);

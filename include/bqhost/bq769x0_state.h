@@ -36,9 +36,11 @@ typedef struct bq769x0 {
     uint8_t held;             /* SYS_STAT bits that are not released yet */
     uint8_t loads;            /* LOAD_PRESENT = 0 in a row */
     uint8_t strikes;          /* fault events in a row */
-    uint8_t phase;            /* balancing alternates between two sets */
+    bool again;               /* the present fault came back */
+    bool released;            /* event_ms is the time of a release */
     uint8_t pointer;          /* register byte of a read */
     uint16_t in_use;          /* inputs that carry cells */
+    uint16_t want_balance;    /* inputs the caller wants bled */
     uint16_t balance;         /* inputs whose switch is commanded */
     uint16_t balanced;        /* ... during the last picture */
     uint16_t faults;          /* BQ_F_... of the picture */
@@ -49,8 +51,9 @@ typedef struct bq769x0 {
     bq_status result, transfer, last;
     uint32_t now_us, now_ms, rest_us, wait_from_us, wait_us;
     uint32_t held_ms;  /* since when the release condition holds, or when the probation began */
-    uint32_t event_ms; /* when the last fault bit appeared */
-    uint32_t picture_ms, picture_us, scrub_ms, served_ms, cc_ms, temp_ms, boot_ms;
+    uint32_t event_ms; /* when the last fault bit appeared, or when it was released */
+    uint32_t picture_ms, picture_us, scrub_ms, served_ms, cc_ms, temp_ms, load_ms, same_ms;
+    uint32_t data_ms; /* from when on the measurement registers count */
     uint32_t sequence;
     uint8_t data[40];              /* registers read last, or to be written */
     uint16_t code[BQ769X0_INPUTS]; /* of the inputs */

@@ -28,9 +28,10 @@ bq_status bq769x0_ts_ohms(uint16_t code, uint32_t *ohms)
     if (code >= BQ769X0_TS_OPEN) {
         return BQ_E_RANGE;
     }
-    /* 10000 x V / (3.3 V - V) with V = 382 uV x code; numerator and denominator divided by 20 to stay in 32
-     * bits */
-    *ohms = 191000u * code / ((1650000u - 191u * code) / 10u + 1u);
+    /* 10000 x V / (3.3 V - V) with V = 382 uV x code, numerator and denominator halved; divided in two steps,
+     * by 1000 and by 10, to stay in 32 bits */
+    uint32_t up = 191000u * code, down = 1650000u - 191u * code;
+    *ohms = up / down * 10u + (up % down * 10u + down / 2u) / down;
     return BQ_OK;
 }
 

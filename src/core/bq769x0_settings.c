@@ -94,7 +94,8 @@ bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t
                                 uint16_t scd_delay_us, bq769x0_current_limits *out)
 {
     uint32_t ocd = ocd_uv / 1000u, scd = scd_uv / 1000u;
-    unsigned range = ocd < 51u && scd < 101u ? 0u : 1u;
+    /* the coarse range only when it holds both limits and one of them needs it */
+    unsigned range = (ocd > 50u || scd > 100u) && ocd >= 17u && scd >= 44u ? 1u : 0u;
     int o = pick8(ocd_mv[range], 16, ocd), s = pick8(scd_mv[range], 8, scd);
     int od = pick16(ocd_ms, 8, ocd_delay_ms), sd = pick16(scd_us, 4, scd_delay_us);
     if (o < 0 || s < 0 || od < 0 || sd < 0) {
