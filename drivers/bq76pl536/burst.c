@@ -8,6 +8,16 @@
 
 #define WIRE_CYCLES 3u /* consecutive cycles before an open wire is reported (PL-SEQ-14-02) */
 
+/* The recommended operating conditions (PL-ELEC-01, PL-AMB-94). */
+#define CELL_MIN_MV 1000u
+#define CELL_MAX_MV 4500u
+#define BRICK_MAX_MV 27000u
+
+static uint8_t outside(uint16_t mv, uint16_t min_mv, uint16_t max_mv)
+{
+    return mv < min_mv || mv > max_mv ? BQ_Q_OUTSIDE : 0u;
+}
+
 void pl_invalidate(bq76pl536_device *dev, uint8_t why, uint16_t fault)
 {
     dev->flags &= (uint16_t)~PL_DEV_VALID;
@@ -74,18 +84,20 @@ static void take_cells(const bq76pl536 *d, unsigned n, bq76pl536_device *dev, co
             continue;
         }
         dev->cell_mv[i] = mv[i];
-        dev->cell_quality[i] = (uint8_t)(BQ_Q_VALID | ((clipped >> i & 1u) != 0u ? BQ_Q_RANGE : 0u));
+        dev->cell_quality[i] = (uint8_t)(BQ_Q_VALID | ((clipped >> i & 1u) != 0u ? BQ_Q_RANGE : 0u) |
+                                         outside(mv[i], CELL_MIN_MV, CELL_MAX_MV));
     }
 }
 
 static void take_gpai(const bq76pl536 *d, bq76pl536_device *dev, uint16_t code)
 {
+    dev->gpai_quality = (uint8_t)(BQ_Q_VALID | (bq76pl536_code_clipped(code) ? BQ_Q_RANGE : 0u));
     if (d->gpai_pins) {
         dev->gpai_mv = (uint16_t)((code * 2500ul + 8191u) / BQ76PL536_CODE_MAX);
     } else {
         (void)bq76pl536_brick_mv(code, &dev->gpai_mv);
+        dev->gpai_quality |= outside(dev->gpai_mv, PL_SUPPLY_MIN_MV, BRICK_MAX_MV);
     }
-    dev->gpai_quality = (uint8_t)(BQ_Q_VALID | (bq76pl536_code_clipped(code) ? BQ_Q_RANGE : 0u));
 }
 
 /* The same results again and again: the conversion start was lost without a trace, or the converter has

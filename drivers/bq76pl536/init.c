@@ -5,6 +5,9 @@
 #include "pl536_internal.h"
 #include <string.h>
 
+#define COV_HYSTERESIS_MV 50u  /* PL-ELEC-05 */
+#define CUV_HYSTERESIS_MV 100u /* PL-ELEC-05 */
+
 static bq_status check_stack(const bq76pl536_config *c)
 {
     if (c->devices < 1u || c->devices > BQ76PL536_MAX_DEVICES) {
@@ -52,6 +55,34 @@ static bq_status check_thresholds(const bq76pl536_config *c)
     }
     st = check_delay(c, c->cov_mv, c->cov_delay_us);
     return st != BQ_OK ? st : check_delay(c, c->cuv_mv, c->cuv_delay_us);
+}
+
+/* Normal operation must release the comparators and keep the smallest device supplied (PL-ELEC-05,
+ * PL-ELEC-03). */
+static bq_status check_normal_range(const bq76pl536_config *c)
+{
+    unsigned fewest = BQ76PL536_MAX_CELLS;
+    for (unsigned n = 0; n < c->devices; n++) {
+        unsigned cells = c->cells != NULL ? c->cells[n] : c->cells_per_device;
+        fewest = cells < fewest ? cells : fewest;
+    }
+    if (c->normal_max_mv != 0u) {
+        if (c->normal_max_mv < c->normal_min_mv) {
+            return BQ_E_RANGE;
+        }
+        if (c->cov_mv != 0u && c->normal_max_mv >= c->cov_mv - COV_HYSTERESIS_MV) {
+            return BQ_E_CONFIG;
+        }
+    }
+    if (c->normal_min_mv != 0u) {
+        if (fewest * c->normal_min_mv < PL_SUPPLY_MIN_MV) {
+            return BQ_E_CONFIG;
+        }
+        if (c->cuv_mv != 0u && c->normal_min_mv <= c->cuv_mv + CUV_HYSTERESIS_MV) {
+            return BQ_E_CONFIG;
+        }
+    }
+    return BQ_OK;
 }
 
 static bq_status check_overtemperature(const bq76pl536_config *c)
@@ -124,6 +155,7 @@ static bq_status check_config(const bq76pl536_config *c)
     bq_status st = check_stack(c);
     st = st != BQ_OK ? st : check_sensors(c);
     st = st != BQ_OK ? st : check_thresholds(c);
+    st = st != BQ_OK ? st : check_normal_range(c);
     st = st != BQ_OK ? st : check_overtemperature(c);
     st = st != BQ_OK ? st : check_clock(c);
     return st != BQ_OK ? st : check_operation(c);

@@ -36,6 +36,7 @@ enum { PL_STATE_NONE, PL_STATE_READY, PL_STATE_ASLEEP };
 #define PL_EVENTS (BQ_F_RESET | BQ_F_CONFIG | BQ_F_LOCKUP | BQ_F_BALANCE)
 
 #define PL_TRIES 3u
+#define PL_SUPPLY_MIN_MV 7200u      /* PL-ELEC-01 */
 #define PL_RESET_US 1000u           /* PL-POR-09 */
 #define PL_POWER_UP_MS 70u          /* PL-SEQ-01-02 */
 #define PL_FIRST_CONVERSION_MS 120u /* PL-SEQ-01-05 */

@@ -49,10 +49,12 @@ typedef struct bq76pl536_config {
     uint16_t sensor_settle_ms;       /**< 5 time constants of the sensor network; 0 = 10 ms */
     uint16_t cov_mv;                 /**< overvoltage trip 2000..5000 in steps of 50; 0 = comparator off */
     uint16_t cuv_mv;                 /**< undervoltage trip 700..3300 in steps of 100; 0 = comparator off */
-    uint32_t cov_delay_us;           /**< 100..3100 in steps of 100, or 100000..3100000 in steps of 100000 */
-    uint32_t cuv_delay_us;           /**< same */
-    uint8_t ot_c[2];                 /**< sensor 1, 2: 40..90 degrees C in steps of 5; 0 = off */
-    uint16_t ot_delay_ms;            /**< 10..2550 in steps of 10 */
+    uint16_t normal_max_mv;          /**< highest cell voltage of normal operation; 0 = not checked */
+    uint16_t normal_min_mv; /**< lowest; the smallest device must reach 7.2 V with it; 0 = not checked */
+    uint32_t cov_delay_us;  /**< 100..3100 in steps of 100, or 100000..3100000 in steps of 100000 */
+    uint32_t cuv_delay_us;  /**< same */
+    uint8_t ot_c[2];        /**< sensor 1, 2: 40..90 degrees C in steps of 5; 0 = off */
+    uint16_t ot_delay_ms;   /**< 10..2550 in steps of 10 */
     uint32_t spi_hz; /**< 0 = by stack size (PL-TIM-10); otherwise 10000..1000000 and within PL-NUM-38 */
     uint8_t balance_timer_s;    /**< safety timer 1..63 s; 0 = 4 s */
     uint16_t balance_settle_ms; /**< wait after balancing off before a conversion; 0 = 10 ms */
@@ -103,10 +105,13 @@ typedef struct bq76pl536_flags {
  * transfer runs; all knowledge is lost. BQ_OK, or with nothing changed: BQ_E_ARG: null pointer, incomplete
  * ops, too few devices in the array; BQ_E_DEVICES, BQ_E_CELLS: stack (PL-ELEC-10, PL-GEN-01); BQ_E_RANGE,
  * BQ_E_NO_CODE: a threshold or delay outside the register or between two codes (PL-ELEC-04, -06, -07),
- * BQ_E_RANGE also for sensors > 2, balance_timer_s > 63 (PL-ELEC-09), wire_limit_mv 1..109 (PL-VBAT-07);
+ * BQ_E_RANGE also for sensors > 2, balance_timer_s > 63 (PL-ELEC-09), wire_limit_mv 1..109 (PL-VBAT-07),
+ * normal_max_mv below normal_min_mv;
  * BQ_E_COV_CUV: closer than 300 mV (PL-COV-12); BQ_E_UNLATCHED: delay 0 of an armed comparator without
  * allow_unlatched; BQ_E_CLOCK: spi_hz outside 10 kHz .. PL-NUM-38 at 40 % duty; BQ_E_CONFIG: sensors without
- * a table, an OT limit without its sensor, an OT delay not above sensor_settle_ms (PL-OT-08).
+ * a table, an OT limit without its sensor, an OT delay not above sensor_settle_ms (PL-OT-08), normal_max_mv
+ * not below cov_mv - 50 or normal_min_mv not above cuv_mv + 100: the fault would never be released
+ * (PL-ELEC-05), or so low that a device with few cells would be without its supply of 7.2 V (PL-ELEC-03).
  */
 bq_status bq76pl536_init(bq76pl536 *d, const bq76pl536_config *config, const bq_spi *spi, const bq_gpio *gpio,
                          const bq_clock *clock, bq76pl536_device *devices, uint8_t device_capacity);
@@ -211,9 +216,11 @@ bq_status bq76pl536_program_otp(bq76pl536 *d, uint8_t device, const uint8_t *ima
 
 /**
  * Copies the picture; see bq_afe_ops.sample. Cells of the base device first. A module that is lost keeps its
- * last values with BQ_Q_COMM, without BQ_Q_VALID. Readings at the end of the converter carry BQ_Q_RANGE.
- * Current fields are not touched. BQ_OK; BQ_E_ARG: null pointer or too little room (nothing written);
- * BQ_E_STALE: no update yet; BQ_E_BUSY: a scan is exchanging the picture at this moment (nothing written).
+ * last values with BQ_Q_COMM, without BQ_Q_VALID. Readings at the end of the converter carry BQ_Q_RANGE;
+ * cells outside 1.0..4.5 V and bricks outside 7.2..27 V are measured and valid, and carry BQ_Q_OUTSIDE
+ * (PL-ELEC-01). Current fields are not touched. BQ_OK; BQ_E_ARG: null pointer or too little room (nothing
+ * written); BQ_E_STALE: no update yet; BQ_E_BUSY: a scan is exchanging the picture at this moment (nothing
+ * written).
  */
 bq_status bq76pl536_sample(bq76pl536 *d, bq_sample *sample);
 

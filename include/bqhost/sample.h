@@ -21,6 +21,7 @@ extern "C" {
 #define BQ_Q_COMM 0x08u       /**< the module did not answer in the last update */
 #define BQ_Q_CHIP 0x10u       /**< the module reports that its own measurement cannot be trusted */
 #define BQ_Q_SENSOR 0x20u     /**< thermistor open or shorted */
+#define BQ_Q_OUTSIDE 0x40u    /**< a warning: outside the range in which the monitor's accuracy is specified */
 
 /** What a monitor says about itself or about its cells; bits of bq_module_reading.faults. */
 #define BQ_F_CELL_OV 0x0001u      /**< hardware cell overvoltage */

@@ -90,6 +90,51 @@ static void refuses_thresholds_without_code_or_too_close(void)
     TEST_ASSERT_EQUAL_INT(BQ_OK, init());
 }
 
+/* proves: PL-ELEC-05 */
+static void refuses_thresholds_that_normal_cells_never_release(void)
+{
+    c.cov_mv = 4200;
+    c.normal_max_mv = 4150; /* the release level itself */
+    refused(BQ_E_CONFIG);
+    c.cuv_mv = 2800;
+    c.normal_min_mv = 2900;
+    refused(BQ_E_CONFIG);
+    c.normal_max_mv = 3000;
+    c.normal_min_mv = 3001;
+    refused(BQ_E_RANGE);
+    c.cov_mv = 4200;
+    c.normal_max_mv = 4149;
+    c.cuv_mv = 2800;
+    c.normal_min_mv = 2901;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init());
+    c.cov_mv = 0; /* nothing to release */
+    c.normal_max_mv = 5000;
+    c.cuv_mv = 0;
+    c.normal_min_mv = 1200;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init());
+}
+
+/* proves: PL-ELEC-03 */
+static void refuses_cells_that_could_not_supply_the_smallest_device(void)
+{
+    static const uint8_t cells[4] = {6, 3, 5, 4};
+    c.cuv_mv = 2000;
+    c.cells = cells;
+    c.normal_min_mv = 2399;
+    refused(BQ_E_CONFIG);
+    c.cuv_mv = 2000;
+    c.cells_per_device = 3;
+    c.normal_min_mv = 2399;
+    refused(BQ_E_CONFIG);
+    c.cuv_mv = 2000;
+    c.cells = cells;
+    c.normal_min_mv = 2400;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init());
+    c.cells = NULL;
+    c.normal_min_mv = 2399; /* six of these suffice */
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init());
+}
+
 /* proves: PL-ELEC-06, PL-ELEC-07, PL-ELEC-08, PL-OT-08, PL-NUM-29, PL-NUM-30 */
 static void refuses_delays_that_do_not_latch_or_have_no_code(void)
 {
@@ -240,6 +285,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(refuses_a_stack_that_cannot_exist);
     RUN_TEST(refuses_thresholds_without_code_or_too_close);
+    RUN_TEST(refuses_thresholds_that_normal_cells_never_release);
+    RUN_TEST(refuses_cells_that_could_not_supply_the_smallest_device);
     RUN_TEST(refuses_delays_that_do_not_latch_or_have_no_code);
     RUN_TEST(refuses_a_clock_beyond_the_limit_of_the_stack);
     RUN_TEST(chooses_the_clock_by_stack_size);

@@ -44,11 +44,39 @@ static void the_ends_of_the_converter_are_marked(void)
     (void)sim_pl_set_cell(&r.pl, 1, 2, 6.5);
     TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan(&r));
     rig_sample(&r);
-    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_RANGE, r.cells[0].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_RANGE | BQ_Q_OUTSIDE, r.cells[0].quality);
     TEST_ASSERT_EQUAL_UINT(0, r.cells[0].mv);
-    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_RANGE, r.cells[1].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_RANGE | BQ_Q_OUTSIDE, r.cells[1].quality);
     TEST_ASSERT_EQUAL_UINT(6250, r.cells[1].mv);
     TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.cells[2].quality);
+}
+
+static void set_brick(double volts)
+{
+    (void)sim_pl_set_vbat(&r.pl, 1, volts);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan(&r));
+    rig_sample(&r);
+}
+
+/* proves: PL-ELEC-01, PL-AMB-94 */
+static void values_outside_the_recommended_range_count_and_carry_a_warning(void)
+{
+    static const double volts[6] = {0.98, 1.02, 3.6, 3.6, 4.48, 4.52};
+    rig_up(&r, &c, NULL);
+    (void)sim_pl_set_cells(&r.pl, 1, volts);
+    set_brick(7.1);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_OUTSIDE, r.modules[0].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.modules[1].quality);
+    for (int i = 0; i < 6; i++) {
+        uint8_t warning = i == 0 || i == 5 ? BQ_Q_OUTSIDE : 0;
+        TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | warning, r.cells[i].quality);
+    }
+    set_brick(7.3);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.modules[0].quality);
+    set_brick(26.9);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, r.modules[0].quality);
+    set_brick(27.1);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID | BQ_Q_OUTSIDE, r.modules[0].quality);
 }
 
 /* proves: PL-TS-01, PL-TS-02, PL-TS-08, PL-TS-09, PL-NUM-12, PL-AMB-75 */
@@ -174,6 +202,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(cells_and_brick_convert_to_the_nearest_millivolt);
     RUN_TEST(the_ends_of_the_converter_are_marked);
+    RUN_TEST(values_outside_the_recommended_range_count_and_carry_a_warning);
     RUN_TEST(thermistors_read_degrees_and_name_broken_sensors);
     RUN_TEST(impossible_content_is_refused_even_with_a_right_crc);
     RUN_TEST(large_stacks_do_not_wrap);
