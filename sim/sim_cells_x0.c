@@ -35,6 +35,11 @@ int sim_cells_x0_input(const sim_cells *c, int cell)
     return 5 * m + input_in_group(cell - c->first_cell[m], c->config.cells_in_module[m]);
 }
 
+int sim_cells_x0_sensor(int thermistor)
+{
+    return (thermistor - 1) * SIM_CELLS_SENSORS + 1;
+}
+
 void sim_cells_x0_feed(sim_cells *c, sim_x0 *s)
 {
     int i = 0;
@@ -51,8 +56,8 @@ void sim_cells_x0_feed(sim_cells *c, sim_x0 *s)
         return;
     }
     c->temps_moved = false;
-    for (int m = 0; m < c->config.modules; m++) {
-        (void)sim_x0_set_ts(s, m + 1, sim_cells_ntc_ohms(sim_cells_celsius(c, m * SIM_CELLS_SENSORS + 1)));
+    for (int t = 1; t <= c->config.modules; t++) {
+        (void)sim_x0_set_ts(s, t, sim_cells_ntc_ohms(sim_cells_celsius(c, sim_cells_x0_sensor(t))));
     }
 }
 

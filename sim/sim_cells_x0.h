@@ -18,6 +18,9 @@ int sim_cells_x0_share(sim_cells_config *config, int inputs, int cells);
 /** Input 1..15 that carries a cell of a string filled by sim_cells_x0_share(). */
 int sim_cells_x0_input(const sim_cells *c, int cell);
 
+/** Sensor of the string that is thermistor 1..3 of the part. */
+int sim_cells_x0_sensor(int thermistor);
+
 /** Shows the present voltages to the part, and the thermistors if a temperature moved. */
 void sim_cells_x0_feed(sim_cells *c, sim_x0 *s);
 

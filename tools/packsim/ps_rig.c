@@ -268,7 +268,8 @@ void ps_rig_act(ps_rig *r, const ps_event *v)
         (void)sim_cells_free(&r->world, v->n);
         break;
     case PS_ACT_SENSOR:
-        (void)sim_cells_force_sensor(&r->world, v->n, v->value);
+        (void)sim_cells_force_sensor(&r->world, r->s->part != NULL ? sim_cells_x0_sensor(v->n) : v->n,
+                                     v->value);
         break;
     case PS_ACT_CURRENT:
         r->s->load.use_table = 0;
