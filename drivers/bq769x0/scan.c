@@ -69,6 +69,9 @@ bq_status x0_job_scan(bq769x0 *d, bq769x0_frame *f)
         x0_bump(&d->stats.scans);
     }
     if (stopped(d)) {
+        SEQ_TRY(d, f, X0_JOB_SCRUB, 0, 0); /* after a reset it stands too, and that has its own name */
+    }
+    if (stopped(d)) {
         x0_invalidate(d, BQ_F_LOCKUP);
         d->same = 0;
         d->shadow2 = 0; /* never the converter off with a FET on (X0-AMB-15) */

@@ -32,6 +32,12 @@ static uint8_t forbidden(uint8_t held)
     return fets;
 }
 
+/* The bits whose release is under way: XREADY comes first and alone. */
+static uint8_t judged(const bq769x0 *d)
+{
+    return (d->held & BQ769X0_STAT_XREADY) != 0u ? BQ769X0_STAT_XREADY : d->held;
+}
+
 /* Whether every cell in use is back inside, with the hysteresis the user asked for (X0-SEQ-30, X0-SEQ-31). */
 static bool cells_cured(const bq769x0 *d)
 {
@@ -99,9 +105,9 @@ static uint32_t probation_ms(const bq769x0 *d)
 
 /* A new fault. One that comes back within 10 s of the release, or while it is on probation, is the same again:
  * waits grow, five short circuits lock (X0-SEQ-32), and XREADY is a defect after 3, 6 and 12 s (X0-SEQ-35). */
-static void take_event(bq769x0 *d, uint8_t set)
+static void take_event(bq769x0 *d, uint8_t set, bool back)
 {
-    d->again = d->probation || (d->held == 0u && d->released && d->now_ms - d->event_ms < 10000u);
+    d->again = back || (d->held == 0u && d->released && d->now_ms - d->event_ms < 10000u);
     if (!d->again && d->held == 0u) {
         d->strikes = 0;
     } else if (d->again && d->strikes < STRIKES_MAX && (set & (OVERCURRENT | BQ769X0_STAT_XREADY)) != 0u) {
@@ -126,7 +132,7 @@ static bool load_due(const bq769x0 *d)
 /* The bits stayed clear long enough. True for XREADY, which is released alone and before everything else. */
 static bool release(bq769x0 *d)
 {
-    uint8_t gone = (d->held & BQ769X0_STAT_XREADY) != 0u ? BQ769X0_STAT_XREADY : d->held;
+    uint8_t gone = judged(d);
     d->held &= (uint8_t)~gone;
     d->probation = false;
     d->released = true;
@@ -138,9 +144,15 @@ static bool release(bq769x0 *d)
 bq_status x0_job_service(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
+    if ((d->stat & BQ769X0_STAT_FAULTS & (d->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
+        /* the register byte of a read carries no CRC (X0-I2C-16): a new bit counts when it is read twice */
+        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
+        d->stat &= d->data[0];
+    }
     f->i = d->stat & BQ769X0_STAT_FAULTS;
-    if ((f->i & ~d->held) != 0u || (d->probation && f->i != 0u)) {
-        take_event(d, f->i);
+    f->x = d->probation && (f->i & judged(d)) != 0u;
+    if ((f->i & ~d->held) != 0u || f->x != 0u) {
+        take_event(d, f->i, f->x != 0u);
         SEQ_TRY(d, f, X0_JOB_OFF, 0, 0);
     }
     d->faults |= flags_of(d->held);
@@ -173,10 +185,7 @@ bq_status x0_job_service(bq769x0 *d, bq769x0_frame *f)
         return BQ_OK;
     }
     if (d->now_ms - d->held_ms >= quiet_ms(d)) {
-        f->x = d->stat & d->held; /* exactly what was read as set (X0-BIT-09) */
-        if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
-            f->x &= BQ769X0_STAT_XREADY;
-        }
+        f->x = d->stat & judged(d); /* exactly what was read as set (X0-BIT-09) */
         if (f->x != 0u) {
             SEQ_TRY(d, f, X0_JOB_CLEAR, f->x, 0);
         }

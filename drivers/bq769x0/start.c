@@ -117,10 +117,12 @@ bq_status x0_job_past(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_CTRL1, 8);
     f->x = 0;
+    f->i = 0xff;
     for (unsigned i = 0; i < 8u; i++) {
         f->x |= d->data[i];
+        f->i &= d->data[i];
     }
-    if (f->x == 0u || f->x == 0xffu) {
+    if (f->x == 0u || f->i == 0xffu) {
         return BQ_E_IMPLAUSIBLE;
     }
     f->x = d->data[5] == 0xacu && d->data[6] == 0x97u && d->data[7] == 0u;
@@ -161,6 +163,7 @@ bq_status x0_job_start(bq769x0 *d, bq769x0_frame *f)
     d->state = X0_STATE_NONE;
     d->valid = d->measured = d->temp_valid = d->fresh_boot = d->probation = d->locked = false;
     d->held = d->strikes = d->shadow1 = 0;
+    d->faults = 0;
     d->balance = 0;
     d->data_ms = d->now_ms;
     SEQ_TRY(d, f, X0_JOB_FIND, 0, 0);

@@ -8,7 +8,7 @@
 #define BQHOST_BQ769X0_STATE_H
 
 #define BQ769X0_INPUTS 15u
-#define BQ769X0_FRAMES 6u
+#define BQ769X0_FRAMES 8u
 #define BQ769X0_BUFFER 84u /* 40 registers with CRC, and the header of a write */
 
 typedef struct bq769x0_frame {
