@@ -86,7 +86,8 @@ bq_status x0_job_compare(bq769x0 *d, bq769x0_frame *f)
     for (f->tries = 0; f->tries < 2u; f->tries++) {
         SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_CELLBAL1, 11);
         if (!differs(d)) {
-            d->shadow2 &= (uint8_t)(d->data[4] | ~BQ769X0_CTRL2_FETS); /* the next apply turns them on again */
+            d->shadow2 &=
+                (uint8_t)(d->data[4] | ~BQ769X0_CTRL2_FETS); /* the next apply turns them on again */
             return BQ_OK;
         }
     }
@@ -124,8 +125,8 @@ bq_status x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
-/* FETs, counter and balancing off, TS1 low, then the pattern 00, 01, 10 with nothing in between, then silence,
- * twice, because one silence may be a disturbed address (X0-SEQ-47). */
+/* FETs, counter and balancing off, TS1 low, then the pattern 00, 01, 10 with nothing in between, then
+ * silence, twice, because one silence may be a disturbed address (X0-SEQ-47). */
 bq_status x0_job_ship(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)

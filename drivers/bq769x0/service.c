@@ -103,8 +103,9 @@ static uint32_t probation_ms(const bq769x0 *d)
     return ms + 500u;
 }
 
-/* A new fault. One that comes back within 10 s of the release, or while it is on probation, is the same again:
- * waits grow, five short circuits lock (X0-SEQ-32), and XREADY is a defect after 3, 6 and 12 s (X0-SEQ-35). */
+/* A new fault. One that comes back within 10 s of the release, or while it is on probation, is the same
+ * again: waits grow, five short circuits lock (X0-SEQ-32), and XREADY is a defect after 3, 6 and 12 s
+ * (X0-SEQ-35). */
 static void take_event(bq769x0 *d, uint8_t set, bool back)
 {
     d->again = back || (d->held == 0u && d->released && d->now_ms - d->event_ms < 10000u);
@@ -202,7 +203,8 @@ void bq769x0_unlock(bq769x0 *d)
     d->strikes = 0; /* the release conditions still have to hold */
 }
 
-/* SYS_CTRL2 as in the shadow but without FETs that are forbidden now, and the switches of d->balance, verified. */
+/* SYS_CTRL2 as in the shadow but without FETs that are forbidden now, and the switches of d->balance,
+ * verified. */
 bq_status x0_job_off(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
@@ -239,7 +241,8 @@ static uint16_t choose(const bq769x0 *d, uint16_t asked)
             uint16_t bit = (uint16_t)(1u << i);
             if ((d->in_use & bit) != 0u && (rank++ + phase + pass) % 2u == 0u && (asked & bit) != 0u &&
                 left != 0u &&
-                bq769x0_balance_legal(d->in_use, (uint16_t)(chosen | bit), !d->config.balance_across_groups)) {
+                bq769x0_balance_legal(d->in_use, (uint16_t)(chosen | bit),
+                                      !d->config.balance_across_groups)) {
                 chosen |= bit;
                 left--;
             }

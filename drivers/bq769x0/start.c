@@ -134,8 +134,8 @@ bq_status x0_job_past(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
-/* Finds the part and makes sure that it answers with more than zeros. A running part is taken over; a bad boot
- * is answered by SHIP and another boot, three times. */
+/* Finds the part and makes sure that it answers with more than zeros. A running part is taken over; a bad
+ * boot is answered by SHIP and another boot, three times. */
 bq_status x0_job_find(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
@@ -193,7 +193,8 @@ bq_status x0_job_first(bq769x0 *d, bq769x0_frame *f)
         SEQ_WAIT(d, f, 5000u);
     }
     if (d->fresh_boot) {
-        d->temp_ms = d->now_ms - X0_TEMP_MS; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
+        d->temp_ms =
+            d->now_ms - X0_TEMP_MS; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
     }
     d->stat = 0;
     for (f->tries = 0; f->tries < 5u; f->tries++) {

@@ -18,14 +18,17 @@ enum { X0_STATE_NONE, X0_STATE_READY, X0_STATE_SHIP };
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-#define X0_WANTED 34u /* where in d->data the other side of a comparison of up to six registers lies */
+#define X0_WANTED 34u    /* where in d->data the other side of a comparison of up to six registers lies */
 
 #define X0_JOBS(JOB)                                                                                         \
     JOB(READ, read)                                                                                          \
-    JOB(WRITE, write) JOB(AGREE, agree) JOB(CLEAR, clear) JOB(SET, set) JOB(START, start) JOB(BOOT, boot) JOB(IDENTIFY, identify)                \
-        JOB(PROBE_CRC, probe_crc) JOB(TRIM, trim) JOB(CONFIGURE, configure) JOB(FIRST, first)                \
-            JOB(SCAN, scan) JOB(SCRUB, scrub) JOB(SERVICE, service) JOB(APPLY, apply) JOB(OFF, off) JOB(SWITCHES, switches)          \
-                JOB(SHIP, ship) JOB(ONESHOT, oneshot) JOB(COMPARE, compare) JOB(PICTURE, picture) JOB(PAST, past) JOB(RELOAD, reload) JOB(FIND, find)
+    JOB(WRITE, write)                                                                                        \
+    JOB(AGREE, agree) JOB(CLEAR, clear) JOB(SET, set) JOB(START, start) JOB(BOOT, boot)                      \
+        JOB(IDENTIFY, identify) JOB(PROBE_CRC, probe_crc) JOB(TRIM, trim) JOB(CONFIGURE, configure)          \
+            JOB(FIRST, first) JOB(SCAN, scan) JOB(SCRUB, scrub) JOB(SERVICE, service) JOB(APPLY, apply)      \
+                JOB(OFF, off) JOB(SWITCHES, switches) JOB(SHIP, ship) JOB(ONESHOT, oneshot)                  \
+                    JOB(COMPARE, compare) JOB(PICTURE, picture) JOB(PAST, past) JOB(RELOAD, reload)          \
+                        JOB(FIND, find)
 
 enum x0_job {
 #define JOB(NAME, name) X0_JOB_##NAME,

@@ -101,15 +101,16 @@ bq_status bq769x0_begin_self_test(bq769x0 *d);
  * three tries. */
 bq_status bq769x0_begin_ship(bq769x0 *d);
 /** Begins one conversion of the coulomb counter (X0-SEQ-46); the result is in the next sample. A counter that
- * runs is stopped for it and runs again afterwards. Ends with BQ_OK, BQ_E_TIMEOUT after three attempts without
- * a result, or a bus error; after an error the next scrub restores the configuration. */
+ * runs is stopped for it and runs again afterwards. Ends with BQ_OK, BQ_E_TIMEOUT after three attempts
+ * without a result, or a bus error; after an error the next scrub restores the configuration. */
 bq_status bq769x0_begin_oneshot(bq769x0 *d);
 /** See bq_afe_ops.poll. */
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us);
-/** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. Chip faults in
- * modules[0].faults: OCD = BQ_F_OVERCURRENT, SCD = BQ_F_SHORT, OV, UV as named, the ALERT override = BQ_F_CHAIN (what
- * hangs on the ALERT line), DEVICE_XREADY = BQ_F_MEMORY, and after it came back three times BQ_F_DEFECTIVE, an input
- * below 0x0518 that should carry a cell = BQ_F_OPEN_WIRE. They stand until the release conditions held long enough. */
+/** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. Chip
+ * faults in modules[0].faults: OCD = BQ_F_OVERCURRENT, SCD = BQ_F_SHORT, OV, UV as named, the ALERT override
+ * = BQ_F_CHAIN (what hangs on the ALERT line), DEVICE_XREADY = BQ_F_MEMORY, and after it came back three
+ * times BQ_F_DEFECTIVE, an input below 0x0518 that should carry a cell = BQ_F_OPEN_WIRE. They stand until the
+ * release conditions held long enough. */
 bq_status bq769x0_sample(bq769x0 *d, bq_sample *sample);
 
 /** GAIN2 calibration (X0-SEQ-45): `stack_mv` was measured by the host at rest; every cell is scaled by it

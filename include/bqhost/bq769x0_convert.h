@@ -56,7 +56,8 @@ typedef struct bq769x0_current_limits {
 /**
  * PROTECT1 and PROTECT2 from limits in mV across the shunt (fractions in uV). The range (RSNS) is decided
  * once for both: the coarse one only when a limit exceeds the fine one and both have a code in it (X0-OCD-11,
- * X0-AMB-47). BQ_OK; BQ_E_NO_CODE: a limit or delay below the smallest the chip offers; BQ_E_CONFIG: the achieved OCD threshold is not below the SCD threshold. Nothing is written after an error.
+ * X0-AMB-47). BQ_OK; BQ_E_NO_CODE: a limit or delay below the smallest the chip offers; BQ_E_CONFIG: the
+ * achieved OCD threshold is not below the SCD threshold. Nothing is written after an error.
  */
 bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t scd_uv,
                                 uint16_t scd_delay_us, bq769x0_current_limits *out);

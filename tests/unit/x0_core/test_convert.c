@@ -80,7 +80,7 @@ static void test_offset_codes(void)
     static const struct {
         uint8_t reg;
         int16_t mv;
-    } row[] = {{0x00, 0},    {0x01, 1},  {0x7f, 127}, {0x80, -128}, {0x81, -127},
+    } row[] = {{0x00, 0},  {0x01, 1},  {0x7f, 127}, {0x80, -128}, {0x81, -127},
                {0xff, -1}, {0x1e, 30}, {0x30, 48},  {0xc4, -60}};
     for (unsigned i = 0; i < sizeof row / sizeof row[0]; i++) {
         TEST_ASSERT_EQUAL_INT(row[i].mv, bq769x0_trim_from(0, row[i].reg, 0).offset_mv);
@@ -118,9 +118,9 @@ static void test_current(void)
     static const struct {
         uint16_t code;
         int32_t nv; /* across the shunt */
-    } row[] = {{0x0001, 8440},       {0x2710, 84400000},    {0x7d00, 270080000},  {0x8300, -270080000},
-               {0xc350, -131123840}, {0xffff, -8440},       {0x0000, 0},          {0x7fff, 276553480},
-               {0x8000, -276561920}, {0xe8dc, -49998560},   {0x1724, 49998560},   {0xfb5f, -10001400},
+    } row[] = {{0x0001, 8440},       {0x2710, 84400000},  {0x7d00, 270080000}, {0x8300, -270080000},
+               {0xc350, -131123840}, {0xffff, -8440},     {0x0000, 0},         {0x7fff, 276553480},
+               {0x8000, -276561920}, {0xe8dc, -49998560}, {0x1724, 49998560},  {0xfb5f, -10001400},
                {0xa36f, -200002680}, {0x0076, 995920}};
     for (unsigned i = 0; i < sizeof row / sizeof row[0]; i++) {
         TEST_ASSERT_INT_WITHIN(1, row[i].nv / 100, bq769x0_current_ma((int16_t)row[i].code, 100));
@@ -140,7 +140,7 @@ static void test_thermistor_codes(void)
     static const struct {
         uint16_t code;
         uint32_t tenths; /* of an ohm, as the formula gives them back */
-    } row[] = {{0, 0},       {86, 1006},      {785, 9995},     {1440, 20003},  {2880, 50011},
+    } row[] = {{0, 0},        {86, 1006},     {785, 9995},    {1440, 20003}, {2880, 50011},
                {4319, 99983}, {5759, 199983}, {7199, 500020}, {7853, 999436}};
     uint32_t ohms = 0;
     for (unsigned i = 0; i < sizeof row / sizeof row[0]; i++) {
@@ -217,9 +217,12 @@ static void test_balancing_sets_of_a_group(void)
     for (unsigned group = 0; group < 15u; group += 5u) {
         for (unsigned bits = 0; bits < 32u; bits++) {
             uint16_t mask = (uint16_t)(bits << group);
-            TEST_ASSERT_EQUAL_INT(listed(three, 5, bits), bq769x0_balance_legal((uint16_t)(0x13u << group), mask, false));
-            TEST_ASSERT_EQUAL_INT(listed(four, 8, bits), bq769x0_balance_legal((uint16_t)(0x17u << group), mask, false));
-            TEST_ASSERT_EQUAL_INT(listed(five, 13, bits), bq769x0_balance_legal((uint16_t)(0x1fu << group), mask, false));
+            TEST_ASSERT_EQUAL_INT(listed(three, 5, bits),
+                                  bq769x0_balance_legal((uint16_t)(0x13u << group), mask, false));
+            TEST_ASSERT_EQUAL_INT(listed(four, 8, bits),
+                                  bq769x0_balance_legal((uint16_t)(0x17u << group), mask, false));
+            TEST_ASSERT_EQUAL_INT(listed(five, 13, bits),
+                                  bq769x0_balance_legal((uint16_t)(0x1fu << group), mask, false));
         }
     }
 }
@@ -253,7 +256,8 @@ static void test_the_field_mistake_of_logical_numbers(void)
             for (unsigned i = a + 1u; i < b; i++) {
                 between = between || (in_use >> i & 1u) != 0u;
             }
-            TEST_ASSERT_EQUAL_INT(used && (between || a / 5u != b / 5u), bq769x0_balance_legal(in_use, mask, false));
+            TEST_ASSERT_EQUAL_INT(used && (between || a / 5u != b / 5u),
+                                  bq769x0_balance_legal(in_use, mask, false));
             /* the other way round: pack numbers written to the switches as they are */
             told_apart += wrong_adjacency_by_cell_number(mask) != bq769x0_balance_legal(in_use, mask, false);
         }

@@ -25,7 +25,8 @@ static bq769x0_trim trim(int gain_uv, int offset_mv)
 static void test_what_a_trip_code_means(void)
 {
     for (unsigned i = 0; i < sizeof trip_codes / sizeof trip_codes[0]; i++) {
-        uint16_t code = trip_codes[i].is_uv ? bq769x0_uv_code(trip_codes[i].trip) : bq769x0_ov_code(trip_codes[i].trip);
+        uint16_t code =
+            trip_codes[i].is_uv ? bq769x0_uv_code(trip_codes[i].trip) : bq769x0_ov_code(trip_codes[i].trip);
         TEST_ASSERT_EQUAL_INT(trip_codes[i].code, code);
         TEST_ASSERT_EQUAL_INT32(trip_codes[i].uv_382_0, bq769x0_cell_uv(trim(382, 0), code));
         TEST_ASSERT_EQUAL_INT32(trip_codes[i].uv_380_30, bq769x0_cell_uv(trim(380, 30), code));
@@ -148,7 +149,8 @@ static void test_delays_of_protect3(void)
 
 static const uint8_t ocd_mv[2][16] = {{8, 11, 14, 17, 19, 22, 25, 28, 31, 33, 36, 39, 42, 44, 47, 50},
                                       {17, 22, 28, 33, 39, 44, 50, 56, 61, 67, 72, 78, 83, 89, 94, 100}};
-static const uint8_t scd_mv[2][8] = {{22, 33, 44, 56, 67, 78, 89, 100}, {44, 67, 89, 111, 133, 155, 178, 200}};
+static const uint8_t scd_mv[2][8] = {{22, 33, 44, 56, 67, 78, 89, 100},
+                                     {44, 67, 89, 111, 133, 155, 178, 200}};
 
 /* What a register pair means, read by the tables of the datasheet. */
 static unsigned ocd_of(const bq769x0_current_limits *l)

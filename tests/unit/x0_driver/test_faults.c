@@ -232,9 +232,9 @@ static void test_under_every_reading(void)
     for (unsigned reading = 0; reading < 10u; reading++) {
         rig_up("bq7692003", 5);
         sim_x0_options *o = &rig.chip.options;
-        bool *const option[10] = {&o->amb10_bat_rounds,    &o->amb16_like_boot,       &o->amb42_full_delay,
-                                  &o->amb43_at_once,       &o->amb50_write_sticks,    &o->amb53_edge,
-                                  &o->amb63_faults_clear_cb, &o->amb65_config_lost, &o->amb83_pointer_lost,
+        bool *const option[10] = {&o->amb10_bat_rounds,      &o->amb16_like_boot,    &o->amb42_full_delay,
+                                  &o->amb43_at_once,         &o->amb50_write_sticks, &o->amb53_edge,
+                                  &o->amb63_faults_clear_cb, &o->amb65_config_lost,  &o->amb83_pointer_lost,
                                   &o->field_alert_high};
         *option[reading] = true;
         rig_pass(2500);

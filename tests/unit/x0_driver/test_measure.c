@@ -132,7 +132,7 @@ static void test_the_field_mistake_of_half_a_crc_check(void)
         TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan());
         errors = rig.d.stats.crc_errors;
         TEST_ASSERT_EQUAL_INT(BQ_OK, bq769x0_begin_scan(&rig.d));
-        (void)bq769x0_poll(&rig.d, NULL);                                  /* SYS_STAT goes out */
+        (void)bq769x0_poll(&rig.d, NULL);                                     /* SYS_STAT goes out */
         (void)sim_x0_flip_sda(&rig.chip, (int)(24u + 8u * byte + byte % 8u)); /* in the block behind it */
         TEST_ASSERT_EQUAL_INT(BQ_OK, rig_run(BQ_OK));
         TEST_ASSERT_EQUAL_UINT(errors + 1u, rig.d.stats.crc_errors);

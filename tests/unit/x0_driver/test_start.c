@@ -42,7 +42,8 @@ static void test_no_device(void)
     TEST_ASSERT_EQUAL_INT(BQ_OK, rig_start());
 }
 
-/* proves: X0-SEQ-06, X0-SEQ-13, X0-SEQ-14, X0-SEQ-15, X0-SEQ-17, X0-SEQ-19, X0-MODE-18, X0-AMB-88, X0-DLY-03 */
+/* proves: X0-SEQ-06, X0-SEQ-13, X0-SEQ-14, X0-SEQ-15, X0-SEQ-17, X0-SEQ-19, X0-MODE-18, X0-AMB-88, X0-DLY-03
+ */
 static void test_warm_start_takes_nothing_for_granted(void)
 {
     rig_up("bq7693003", 8);
@@ -231,7 +232,8 @@ static void test_configurations_that_are_refused(void)
     REFUSED(BQ_OK, (void)0);
     REFUSED(BQ_E_RANGE, rig.config.inputs = 6);
     REFUSED(BQ_E_CELLS, rig.config.wiring = 0x000f);
-    REFUSED(BQ_E_RANGE, rig.config.ov_recover_mv = 0); /* mandatory: a fault that cannot end, or ends at once */
+    REFUSED(BQ_E_RANGE,
+            rig.config.ov_recover_mv = 0); /* mandatory: a fault that cannot end, or ends at once */
     REFUSED(BQ_E_RANGE, rig.config.uv_recover_mv = 0);
     REFUSED(BQ_E_RANGE, rig.config.ov_recover_mv = 4250);
     REFUSED(BQ_E_RANGE, rig.config.uv_recover_mv = 2800);
