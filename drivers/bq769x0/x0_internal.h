@@ -10,6 +10,7 @@
 
 #include "bqhost/bq769x0.h"
 #include "bqhost/bq769x0_regs.h"
+#include "bqhost/seq.h"
 
 enum { X0_IO_NONE, X0_IO_TRANSFER, X0_IO_WAIT };
 enum { X0_STATE_NONE, X0_STATE_READY, X0_STATE_SHIP };
@@ -40,30 +41,9 @@ enum x0_job {
 X0_JOBS(JOB)
 #undef JOB
 
-#define SEQ_BEGIN(f)                                                                                         \
-    switch ((f)->pc) {                                                                                       \
-    case 0:
-#define SEQ_END                                                                                              \
-    }                                                                                                        \
-    return BQ_E_STATE
-#define SEQ_SEND(f, start)                                                                                   \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return (start);                                                                                      \
-    case __LINE__:;                                                                                          \
-    } while (0)
-#define SEQ_WAIT(d, f, us)                                                                                   \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return x0_wait((d), (us));                                                                           \
-    case __LINE__:;                                                                                          \
-    } while (0)
-#define SEQ_CALL(d, f, job, reg, n)                                                                          \
-    do {                                                                                                     \
-        (f)->pc = (uint16_t)__LINE__;                                                                        \
-        return x0_push((d), (job), (reg), (n));                                                              \
-    case __LINE__:;                                                                                          \
-    } while (0)
+#define SEQ_SEND(f, start) SEQ_YIELD(f, start)
+#define SEQ_WAIT(d, f, us) SEQ_YIELD(f, x0_wait((d), (us)))
+#define SEQ_CALL(d, f, job, reg, n) SEQ_YIELD(f, x0_push((d), (job), (reg), (n)))
 #define SEQ_TRY(d, f, job, reg, n)                                                                           \
     do {                                                                                                     \
         SEQ_CALL(d, f, job, reg, n);                                                                         \
