@@ -186,7 +186,21 @@ times real time; bytes per scan include the read-back of configuration.
 | | |
 |---|---|
 TEXT
-    run table16 packsim tools/bench/speed.ini --quiet |
+    speed_rows tools/bench/speed.ini
+    cat <<'TEXT'
+
+A bq76940 with 13 cells, two hours of riding, pause and charging, four updates a second:
+
+    build/bench-table16/tools/packsim/packsim ebike-13s --quiet
+
+| | |
+|---|---|
+TEXT
+    speed_rows ebike-13s
+}
+
+speed_rows() { # speed_rows SCENARIO
+    run table16 packsim "$1" --quiet |
         sed -n -E 's/^(devices found|cells|simulated|scans|bus bytes per scan|misuse|speed|result): (.*)$/| \1 | \2 |/p'
 }
 
