@@ -24,7 +24,7 @@ bq_status x0_job_boot(bq769x0 *d, bq769x0_frame *f)
     x0_drive(d, BQ_LINE_AFE_BOOT, false);
     SEQ_WAIT(d, f, 1000u);
     x0_drive(d, BQ_LINE_AFE_BOOT, true);
-    d->data_ms = d->now_ms + 10u + x0_first_ms(d);
+    d->data_ms = d->now_ms + 11u + x0_first_ms(d); /* the clock drops fractions */
     d->fresh_boot = true;
     SEQ_WAIT(d, f, 2500u);
     x0_drive(d, BQ_LINE_AFE_BOOT, false);
