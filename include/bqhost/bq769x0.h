@@ -46,7 +46,7 @@ typedef struct bq769x0_config {
     uint16_t scd_delay_us;   /**< 70..400 */
     uint16_t load_settle_ms; /**< CHG off until the first look at LOAD_PRESENT; 0 = 100 (X0-LOAD-05) */
     uint16_t frozen_scans;   /**< identical pictures in a row that count as a stopped converter; 0 = never */
-    uint8_t balance_timer_s; /**< balancing ends when no scan or apply came for so long; 0 = 4 (X0-CB-13) */
+    uint8_t balance_timer_s; /**< a scan ends balancing when no apply came for so long; 0 = 4 (X0-CB-13) */
     uint8_t balance_max;     /**< switches on at the same time; 0 = no limit (X0-SEQ-42) */
     bool counter_off;        /**< leave the coulomb counter off: current by bq769x0_begin_oneshot() alone */
     bool balance_across_groups; /**< allow 5+6 and 10+11 together (X0-AMB-61) */
