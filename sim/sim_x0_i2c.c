@@ -160,7 +160,6 @@ bool x0_bus_write(sim_x0 *s, uint8_t byte)
     }
     if (s->bus.nack_bytes > 0) {
         s->bus.nack_bytes--;
-        c->damaged = true;
         c->state = DEAF;
         return false;
     }

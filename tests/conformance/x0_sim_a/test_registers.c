@@ -161,6 +161,13 @@ static void test_bits_that_are_not_implemented(void)
         TEST_ASSERT_TRUE(rig_write(c[i].reg, c[i].written));
         expect_reg(c[i].reg, c[i].read);
         expect_misuse(c[i].id);
+        for (int bit = 0x80; bit != 0; bit >>= 1) { /* each bit alone */
+            if ((c[i].written & ~c[i].read & bit) != 0) {
+                TEST_ASSERT_TRUE(rig_write(c[i].reg, c[i].read | bit));
+                expect_reg(c[i].reg, c[i].read);
+                expect_misuse(c[i].id);
+            }
+        }
     }
     TEST_ASSERT_TRUE(rig_write(0x04, 0x90)); /* LOAD_PRESENT as it may have been read: ignored, no misuse */
     expect_reg(0x04, 0x10);

@@ -130,6 +130,10 @@ static void detects_a_load(const rig_part *p)
         TEST_ASSERT_FALSE(sim_x0_alert(&chip));
     }
     TEST_ASSERT_TRUE(rig_write(0x05, 0x00));
+    (void)sim_x0_set_chgpin(&chip, 0.699);
+    expect_reg(0x04, 0x10);
+    (void)sim_x0_set_chgpin(&chip, 0.701);
+    expect_reg(0x04, 0x90);
     TEST_ASSERT_TRUE(rig_write(0x04, 0x10)); /* read-only */
     expect_reg(0x04, 0x90);
     rig_wait(5000);
