@@ -38,17 +38,17 @@ typedef struct sim_x0_part {
 typedef struct sim_x0_options {
     uint32_t seed;       /**< of everything random below */
     double noise_uv_rms; /**< of the cell channels in 50 ms windows; doubled in 12.5 ms windows (X0-SCH-03) */
-    double cc_noise_uv_rms;    /**< of the coulomb counter */
-    bool amb10_bat_rounds;      /**< X0-AMB-10: BAT is rounded to the nearest code, not down */
-    bool amb16_like_boot;       /**< X0-AMB-16: after ADC_EN 0 -> 1 the registers read 0 until a first scan as
-                                   long as after boot */
-    bool amb25_ready_ignored;   /**< X0-AMB-25: a one-shot starts although CC_READY is set */
-    bool amb26_finishes;        /**< X0-AMB-26: CC_EN 0 lets the running window finish, with CC_READY */
-    bool amb42_full_delay;      /**< X0-AMB-42: a cleared OV or UV comes back after the whole delay, not at the
-                                   next scan */
-    bool amb43_at_once;         /**< X0-AMB-43: a cleared OCD or SCD comes back at once */
-    bool amb50_write_sticks;    /**< X0-AMB-50: a FET bit may be set while its fault bit is set */
-    bool amb53_edge;            /**< X0-AMB-53: only a rising outside level sets OVRD_ALERT */
+    double cc_noise_uv_rms;   /**< of the coulomb counter */
+    bool amb10_bat_rounds;    /**< X0-AMB-10: BAT is rounded to the nearest code, not down */
+    bool amb16_like_boot;     /**< X0-AMB-16: after ADC_EN 0 -> 1 the registers read 0 until a first scan as
+                                 long as after boot */
+    bool amb25_ready_ignored; /**< X0-AMB-25: a one-shot starts although CC_READY is set */
+    bool amb26_finishes;      /**< X0-AMB-26: CC_EN 0 lets the running window finish, with CC_READY */
+    bool amb42_full_delay;    /**< X0-AMB-42: a cleared OV or UV comes back after the whole delay, not at the
+                                 next scan */
+    bool amb43_at_once;       /**< X0-AMB-43: a cleared OCD or SCD comes back at once */
+    bool amb50_write_sticks;  /**< X0-AMB-50: a FET bit may be set while its fault bit is set */
+    bool amb53_edge;          /**< X0-AMB-53: only a rising outside level sets OVRD_ALERT */
     bool amb63_faults_clear_cb; /**< X0-AMB-63: every fault clears the CELLBAL registers */
     bool amb65_config_lost;     /**< X0-AMB-65: XREADY loads the defaults of 0x06..0x0b */
     bool amb66_upper_zero;      /**< X0-AMB-66: while XREADY is set the upper groups read 0 V */
@@ -59,16 +59,16 @@ typedef struct sim_x0_options {
     bool amb86_nack;            /**< X0-AMB-86: a write to a read-only register is not acknowledged */
     bool amb88_nibble_reads_8;  /**< X0-AMB-88: PROTECT3 bits 3..0 come up as 1000 */
     bool field_zero_boot;       /**< field: after the next boot everything reads zero until SHIP */
-    bool field_nibble_offset;   /**< field: PROTECT3's low nibble written to 0 over another value and then read
-                                   shifts the current */
-    bool field_alert_high;      /**< field: ALERT is high although SYS_STAT reads 0 */
+    bool field_nibble_offset; /**< field: PROTECT3's low nibble written to 0 over another value and then read
+                                 shifts the current */
+    bool field_alert_high;    /**< field: ALERT is high although SYS_STAT reads 0 */
 } sim_x0_options;
 
 /** Faults injected on the I2C bus, the one point where they touch it. All zero = none. */
 typedef struct sim_x0_bus_fault {
     double flip_probability; /**< each data or address bit, either direction */
-    int stuck_clocks; /**< SDA is held low until so many clocks were given; -1 = for ever; 0 = free. A transfer
-                         tried meanwhile goes as with dead = 1. */
+    int stuck_clocks;        /**< SDA is held low until so many clocks were given; -1 = for ever; 0 = free. A
+                                transfer        tried meanwhile goes as with dead = 1. */
     int dead; /**< 1 = the wires read 00 (every byte seems acknowledged), 2 = they read ff; the device hears
                  nothing */
     uint32_t nack_bytes;   /**< so many bytes from now are not acknowledged and not taken */

@@ -100,8 +100,8 @@ static void write_ctrl1(sim_x0 *s, uint8_t value)
     uint8_t before = s->reg[X0_SYS_CTRL1], pattern = value & 3u;
     bool armed = s->ship_armed;
     s->reg[X0_SYS_CTRL1] = value & 0x1fu;
-    s->ship_armed = pattern == 1u && (s->options.amb71_needs_00 ? (before & 3u) == 0u
-                                                                : (before & 3u) != 1u); /* X0-MODE-11 */
+    s->ship_armed = pattern == 1u &&
+                    (s->options.amb71_needs_00 ? (before & 3u) == 0u : (before & 3u) != 1u); /* X0-MODE-11 */
     if (armed && pattern == 2u) {
         x0_enter_ship(s);
         return;

@@ -39,10 +39,10 @@ static void test_codes(void)
     static const struct {
         double uv;
         int code;
-    } c[] = {{8.44, 0x0001},       {84400.0, 0x2710},    {270080.0, 0x7d00},  {-270080.0, 0x8300},
-             {-131123.84, 0xc350}, {-8.44, 0xffff},      {0.0, 0x0000},       {276553.48, 0x7fff},
-             {-276561.92, 0x8000}, {-50000.0, 0xe8dc},   {50000.0, 0x1724},   {-10000.0, 0xfb5f},
-             {-200000.0, 0xa36f},  {1000.0, 0x0076},     {400000.0, 0x7fff}, {-400000.0, 0x8000}};
+    } c[] = {{8.44, 0x0001},       {84400.0, 0x2710},  {270080.0, 0x7d00}, {-270080.0, 0x8300},
+             {-131123.84, 0xc350}, {-8.44, 0xffff},    {0.0, 0x0000},      {276553.48, 0x7fff},
+             {-276561.92, 0x8000}, {-50000.0, 0xe8dc}, {50000.0, 0x1724},  {-10000.0, 0xfb5f},
+             {-200000.0, 0xa36f},  {1000.0, 0x0076},   {400000.0, 0x7fff}, {-400000.0, 0x8000}};
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         TEST_ASSERT_EQUAL_HEX16(c[i].code, code_of(c[i].uv * 1e-6));
     }
@@ -134,6 +134,12 @@ static void test_one_shot_while_always_on_has_no_effect(void)
     rig_wait(250);
     expect_stat(READY);
     expect_reg(0x05, ON);
+    rig_clear();
+    TEST_ASSERT_TRUE(
+        rig_write(0x05, SHOT)); /* CC_EN still was 1 when this came: it only turns the counter off */
+    expect_reg(0x05, 0x00);
+    rig_wait(1000);
+    expect_stat(0x00);
 }
 
 /* proves: X0-CC-07, X0-AMB-25 */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Framing, pointer and CRC on the bus. */
 #include "rig.h"
+#include <stdlib.h>
 
 #define W 0x10
 #define R 0x11
@@ -54,7 +55,8 @@ static void frames_a_single_write(const rig_part *p)
     rig_boot(p->name);
     start();
     TEST_ASSERT_TRUE(put(f[0]) && put(f[1]) && put(f[2]));
-    TEST_ASSERT_EQUAL_HEX8(p->crc ? 0x97 : 0x5a, sim_x0_peek(&chip, 0x0a)); /* X0-AMB-81: when it takes effect */
+    TEST_ASSERT_EQUAL_HEX8(p->crc ? 0x97 : 0x5a,
+                           sim_x0_peek(&chip, 0x0a)); /* X0-AMB-81: when it takes effect */
     if (p->crc) {
         TEST_ASSERT_TRUE(put(rig_crc(f, 3)));
     }
@@ -313,6 +315,52 @@ static void test_no_bus_time_and_no_timeout(void)
     TEST_ASSERT_TRUE(sim_x0_sda_free(&chip));
 }
 
+/* Sends the tokens of a trace and demands each acknowledge and each byte read. */
+static void replay(const char *trace)
+{
+    for (const char *t = trace; *t != '\0'; t += strspn(t, " ")) {
+        size_t n = strcspn(t, " ");
+        int byte = (int)strtol(t, NULL, 16);
+        const char *next = t + n + strspn(t + n, " ");
+        if (n == 1) {
+            (t[0] == 'S' ? start : stop)();
+        } else if (n == 3) {
+            TEST_ASSERT_EQUAL_MESSAGE(t[2] == '+', put(byte), trace);
+        } else {
+            TEST_ASSERT_EQUAL_HEX8_MESSAGE(byte, get(*next != 'P'), trace);
+        }
+        t += n;
+    }
+}
+
+/* proves: X0-NUM-859, X0-NUM-860, X0-NUM-861, X0-NUM-862, X0-NUM-863, X0-NUM-864, X0-NUM-865, X0-NUM-866 */
+static void test_the_crc_of_address_0x18(void)
+{
+    /* no real part joins that address and CRC; a made-up one tests the arithmetic */
+    static const sim_x0_part odd = {"made-up", 5, 0x18, true, 3300};
+    TEST_ASSERT_EQUAL(0, sim_x0_init(&chip, &odd, NULL));
+    (void)sim_x0_set_gain(&chip, 373); /* 0x50 reads 04 */
+    (void)sim_x0_set_offset(&chip, 30);
+    for (int i = 1; i <= 5; i++) {
+        (void)sim_x0_set_cell(&chip, i, 0x24d0 * 373e-6 + 0.030);
+    }
+    (void)sim_x0_boot(&chip, 3 * MS);
+    rig_wait(300);
+    replay("S 30+ 0b+ 19+ 39+ P");
+    replay("S 30+ 04+ S 31+ 10 9c P");
+    replay("S 30+ 0c+ S 31+ 24 10 d0 3e 24 fc d0 3e P");
+    replay("S 30+ 50+ S 31+ 04 f0 1e 5a P");
+    replay("S 30+ 05+ 43+ 6e+ P");
+    rig_wait(250);
+    replay("S 30+ 00+ S 31+ 80 65 P");
+    replay("S 30+ 00+ 80+ 68+ P");
+    TEST_ASSERT_EQUAL_HEX8(0x00, sim_x0_peek(&chip, 0x00));
+    replay("S 30+ 06+ 8b+ 27+ 5a+ 81+ 50+ b7+ bf+ 34+ 99+ c6+ 19+ 4f+ P");
+    TEST_ASSERT_EQUAL_HEX8(0x99, sim_x0_peek(&chip, 0x0a));
+    TEST_ASSERT_EQUAL_HEX8(0x43, sim_x0_peek(&chip, 0x05));
+    expect_clean();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -330,5 +378,6 @@ int main(void)
     RUN_TEST(test_one_flipped_bit_of_a_write);
     RUN_TEST(test_one_flipped_bit_of_a_read);
     RUN_TEST(test_no_bus_time_and_no_timeout);
+    RUN_TEST(test_the_crc_of_address_0x18);
     return UNITY_END();
 }

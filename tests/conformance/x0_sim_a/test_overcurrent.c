@@ -118,7 +118,7 @@ static void test_protect1_values(void)
 {
     static const struct {
         int value, us, mv;
-    } c[] = {{0x00, 70, 22}, {0x80, 70, 44},   {0x8b, 100, 111}, {0x8c, 100, 133},
+    } c[] = {{0x00, 70, 22},   {0x80, 70, 44},   {0x8b, 100, 111}, {0x8c, 100, 133},
              {0x17, 200, 100}, {0x9f, 400, 200}, {0x1d, 400, 78}};
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         prepare("bq7694003", NULL, c[i].value, 0x7f);

@@ -76,9 +76,9 @@ static void test_the_suffix_fixes_address_crc_and_regulator(void)
 static void test_any_other_name_is_refused(void)
 {
     static const char *const wrong[] = {
-        "",          "bq76920",    "bq7692004",    "bq7692005",  "bq7692007", "bq7694000DBT",
-        "bq7694003R", "bq769400",  "BQ7694000",    "bq7695000",  "bq7694 00", "bq76PL536",
-        "bq7691000", "bq76940000", "bq7694000DBTR", " bq7694000", "bq7694010", "bq7694030"};
+        "",           "bq76920",    "bq7692004",     "bq7692005",  "bq7692007", "bq7694000DBT",
+        "bq7694003R", "bq769400",   "BQ7694000",     "bq7695000",  "bq7694 00", "bq76PL536",
+        "bq7691000",  "bq76940000", "bq7694000DBTR", " bq7694000", "bq7694010", "bq7694030"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         TEST_ASSERT_TRUE_MESSAGE(sim_x0_find_part(wrong[i]) == NULL, wrong[i]);
     }

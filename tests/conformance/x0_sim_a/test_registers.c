@@ -4,9 +4,9 @@
 
 typedef struct row {
     int reg;
-    int inputs; /* the smallest size that has it */
-    int reset;  /* on entering NORMAL */
-    int stores; /* bits that keep what is written; 0 = read-only */
+    int inputs;   /* the smallest size that has it */
+    int reset;    /* on entering NORMAL */
+    int stores;   /* bits that keep what is written; 0 = read-only */
     int harmless; /* a value that is no misuse and starts nothing */
 } row;
 
@@ -23,7 +23,9 @@ static int smallest_with(int reg)
     if (reg >= 0x0c && reg <= 0x29) {
         return reg < 0x16 ? 5 : reg < 0x20 ? 10 : 15;
     }
-    return reg == 0x02 || reg == 0x2e || reg == 0x2f ? 10 : reg == 0x03 || reg == 0x30 || reg == 0x31 ? 15 : 5;
+    return reg == 0x02 || reg == 0x2e || reg == 0x2f   ? 10
+           : reg == 0x03 || reg == 0x30 || reg == 0x31 ? 15
+                                                       : 5;
 }
 
 static void resets_as_listed(const rig_part *p)
@@ -180,9 +182,10 @@ static void test_reserved_bits_store_and_are_misuse(void)
     static const struct {
         int reg, bits, base;
         const char *id;
-    } c[] = {{0x04, 0x04, 0x10, "X0-REG-04"}, {0x05, 0x04, 0x00, "X0-REG-05"}, {0x05, 0x08, 0x00, "X0-REG-05"},
-             {0x05, 0x10, 0x00, "X0-REG-05"}, {0x06, 0x20, 0x00, "X0-REG-06"}, {0x08, 0x01, 0x00, "X0-REG-08"},
-             {0x08, 0x02, 0x00, "X0-REG-08"}, {0x08, 0x04, 0x00, "X0-REG-08"}, {0x08, 0x08, 0x00, "X0-REG-08"}};
+    } c[] = {
+        {0x04, 0x04, 0x10, "X0-REG-04"}, {0x05, 0x04, 0x00, "X0-REG-05"}, {0x05, 0x08, 0x00, "X0-REG-05"},
+        {0x05, 0x10, 0x00, "X0-REG-05"}, {0x06, 0x20, 0x00, "X0-REG-06"}, {0x08, 0x01, 0x00, "X0-REG-08"},
+        {0x08, 0x02, 0x00, "X0-REG-08"}, {0x08, 0x04, 0x00, "X0-REG-08"}, {0x08, 0x08, 0x00, "X0-REG-08"}};
     rig_boot("bq7692000");
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         TEST_ASSERT_TRUE(rig_write(c[i].reg, c[i].base | c[i].bits));

@@ -28,9 +28,15 @@ static void test_thermistor_codes(void)
         double ohms;
         int code;
         double back;
-    } c[] = {{0, 0, 0.0},           {100, 86, 100.6},       {1000, 785, 999.5},
-             {2000, 1440, 2000.3},  {5000, 2880, 5001.1},   {10000, 4319, 9998.3},
-             {20000, 5759, 19998.3}, {50000, 7199, 50002.0}, {100000, 7853, 99943.6}};
+    } c[] = {{0, 0, 0.0},
+             {100, 86, 100.6},
+             {1000, 785, 999.5},
+             {2000, 1440, 2000.3},
+             {5000, 2880, 5001.1},
+             {10000, 4319, 9998.3},
+             {20000, 5759, 19998.3},
+             {50000, 7199, 50002.0},
+             {100000, 7853, 99943.6}};
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         double volts = c[i].code * 382e-6;
         TEST_ASSERT_EQUAL(c[i].code, first_code(true, c[i].ohms, -40.0));
@@ -49,7 +55,7 @@ static void test_die_codes(void)
         double celsius;
         int code;
         double back;
-    } c[] = {{-40, 3856, -40.00}, {0, 3416, 0.02},     {25, 3141, 25.03},  {60, 2757, 59.96},
+    } c[] = {{-40, 3856, -40.00}, {0, 3416, 0.02},    {25, 3141, 25.03},  {60, 2757, 59.96},
              {85, 2482, 84.97},   {100, 2317, 99.98}, {125, 2042, 124.99}};
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         TEST_ASSERT_EQUAL(c[i].code, first_code(false, 1234.0, c[i].celsius));
@@ -163,7 +169,7 @@ static void test_the_offset_table(void)
 {
     static const struct {
         int byte, mv;
-    } c[] = {{0x00, 0},   {0x01, 1},  {0x7f, 127}, {0x80, -128}, {0x81, -127},
+    } c[] = {{0x00, 0},  {0x01, 1},  {0x7f, 127}, {0x80, -128}, {0x81, -127},
              {0xff, -1}, {0x1e, 30}, {0x30, 48},  {0xc4, -60}};
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         rig_pulse("bq7692003");

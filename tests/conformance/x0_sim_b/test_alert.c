@@ -182,7 +182,8 @@ static void has_an_internal_fault(const rig_part *p)
     expect_clean();
 }
 
-/* proves: X0-XRDY-01, X0-XRDY-02, X0-XRDY-05, X0-XRDY-06, X0-FET-08, X0-AMB-65, X0-AMB-66, X0-AMB-104, X0-CB-03 */
+/* proves: X0-XRDY-01, X0-XRDY-02, X0-XRDY-05, X0-XRDY-06, X0-FET-08, X0-AMB-65, X0-AMB-66, X0-AMB-104,
+ * X0-CB-03 */
 static void test_the_internal_fault(void)
 {
     rig_each(has_an_internal_fault);

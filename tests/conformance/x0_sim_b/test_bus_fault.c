@@ -10,7 +10,8 @@ static void boot(const char *part)
     bus = sim_x0_bus(&chip);
 }
 
-/* Reads a register without the rig's demands; -1 when a byte was not acknowledged, -2 when the CRC is wrong. */
+/* Reads a register without the rig's demands; -1 when a byte was not acknowledged, -2 when the CRC is wrong.
+ */
 static int try_read(int reg)
 {
     uint8_t got[2] = {0x11, 0};

@@ -75,6 +75,37 @@ static void test_a_pulse_known_only_at_its_end(void)
     TEST_ASSERT_EQUAL(-1, sim_x0_boot_ended(&chip, 108 * MS)); /* from the future */
 }
 
+/* proves: X0-MODE-06 */
+static void test_a_pulse_longer_than_the_boot(void)
+{
+    rig_ship("bq7692003");
+    rig_at(110.5);
+    TEST_ASSERT_EQUAL(0, sim_x0_boot_ended(&chip, 100 * MS)); /* 10 ms were over at 110 ms */
+    rig_wait(0);
+    TEST_ASSERT_EQUAL(SIM_X0_NORMAL, chip.mode);
+    TEST_ASSERT_EQUAL_UINT64(110500 * US, chip.now);
+    TEST_ASSERT_EQUAL_UINT64(250 * MS, sim_x0_next_event(&chip));
+}
+
+/* proves: X0-MODE-07, X0-AMB-70 */
+static void test_no_timer_and_no_memory_of_the_host_survives_ship(void)
+{
+    rig_boot("bq7692003");
+    (void)sim_x0_strike_xready(&chip);
+    expect_stat(0x20);
+    (void)sim_x0_set_cell(&chip, 1, 4.5);
+    rig_wait(900); /* most of the delay */
+    TEST_ASSERT_TRUE(rig_write(0x04, 0x11) && rig_write(0x04, 0x12));
+    (void)sim_x0_boot(&chip, 3 * MS);
+    rig_wait(20);
+    TEST_ASSERT_TRUE(rig_write(0x00, 0x20)); /* read before SHIP only */
+    expect_misuse("X0-BIT-09");
+    rig_wait(1239.999);
+    expect_stat(0x00);
+    rig_wait(0.001); /* first publication and the whole delay */
+    expect_stat(0x04);
+}
+
 /* proves: X0-AMB-75 */
 static void test_only_a_pulse_after_ship_boots(void)
 {
@@ -177,13 +208,20 @@ static void test_the_pattern(void)
         int n;
         bool ships, strict;
     } c[] = {
-        {{0x10, 0x11, 0x12}, 3, true, true},        {{0x11, 0x12}, 2, true, true},
-        {{0x12, 0x11, 0x12}, 3, true, false},       {{0x13, 0x11, 0x12}, 3, true, false},
-        {{0x11, 0x11, 0x12}, 3, false, false},      {{0x11, 0x13, 0x12}, 3, false, false},
-        {{0x11, 0x10, 0x12}, 3, false, false},      {{0x12}, 1, false, false},
-        {{0x13}, 1, false, false},                  {{0x11}, 1, false, false},
-        {{0x11, 0x11, 0x11, 0x12}, 4, false, false}, {{0x01, 0x02}, 2, true, true},
-        {{0x19, 0x0a}, 2, true, true},              {{0x12, 0x12}, 2, false, false},
+        {{0x10, 0x11, 0x12}, 3, true, true},
+        {{0x11, 0x12}, 2, true, true},
+        {{0x12, 0x11, 0x12}, 3, true, false},
+        {{0x13, 0x11, 0x12}, 3, true, false},
+        {{0x11, 0x11, 0x12}, 3, false, false},
+        {{0x11, 0x13, 0x12}, 3, false, false},
+        {{0x11, 0x10, 0x12}, 3, false, false},
+        {{0x12}, 1, false, false},
+        {{0x13}, 1, false, false},
+        {{0x11}, 1, false, false},
+        {{0x11, 0x11, 0x11, 0x12}, 4, false, false},
+        {{0x01, 0x02}, 2, true, true},
+        {{0x19, 0x0a}, 2, true, true},
+        {{0x12, 0x12}, 2, false, false},
     };
     for (size_t i = 0; i < sizeof c / sizeof c[0]; i++) {
         TEST_ASSERT_EQUAL(c[i].ships, ships(c[i].writes, c[i].n, NULL));
@@ -305,6 +343,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_boot);
     RUN_TEST(test_a_pulse_known_only_at_its_end);
+    RUN_TEST(test_a_pulse_longer_than_the_boot);
+    RUN_TEST(test_no_timer_and_no_memory_of_the_host_survives_ship);
     RUN_TEST(test_only_a_pulse_after_ship_boots);
     RUN_TEST(test_writes_before_normal_are_lost);
     RUN_TEST(test_a_bus_that_wakes_with_normal_in_the_other_reading);

@@ -103,6 +103,19 @@ static void test_a_set_bit_holds_its_fet(void)
     }
 }
 
+/* proves: X0-AMB-50 */
+static void test_a_fet_that_sticks_stays_on_while_the_fault_lasts(void)
+{
+    sim_x0_options sticks = {.amb50_write_sticks = true};
+    rig_boot_with("bq7693003", &sticks);
+    (void)sim_x0_set_cell(&chip, 1, 4.5);
+    rig_wait(2000);
+    expect_stat(0x04);
+    TEST_ASSERT_TRUE(rig_write(0x05, CHG));
+    rig_wait(5000); /* the reaction belongs to the moment the bit becomes 1 */
+    expect_reg(0x05, CHG);
+}
+
 /* proves: X0-FET-09, X0-MODE-12 */
 static void test_ship_turns_both_off(void)
 {
@@ -255,7 +268,7 @@ static void test_the_switches_open_while_the_group_is_measured(void)
         rig_at(510);
         TEST_ASSERT_TRUE(rig_write(0x01, 0x15));
         TEST_ASSERT_EQUAL_HEX16(0x15, sim_x0_cb_conducting(&chip)); /* acts at once */
-        for (int us = 0; us < 2500000; us += 500) { /* ten intervals */
+        for (int us = 0; us < 2500000; us += 500) {                 /* ten intervals */
             bool now = sim_x0_cb_conducting(&chip) != 0;
             TEST_ASSERT_EQUAL_HEX16(0x15, sim_x0_cb(&chip));
             on += now;
@@ -333,6 +346,7 @@ int main(void)
     RUN_TEST(test_the_pins_follow_the_bits);
     RUN_TEST(test_every_event_of_the_table);
     RUN_TEST(test_a_set_bit_holds_its_fet);
+    RUN_TEST(test_a_fet_that_sticks_stays_on_while_the_fault_lasts);
     RUN_TEST(test_ship_turns_both_off);
     RUN_TEST(test_load_detection);
     RUN_TEST(test_each_bit_is_the_switch_of_its_input);

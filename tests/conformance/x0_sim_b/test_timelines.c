@@ -11,7 +11,8 @@ static bool answers(void)
 
 static int vc(int input)
 {
-    return sim_x0_peek(&chip, (uint8_t)(0x0a + 2 * input)) << 8 | sim_x0_peek(&chip, (uint8_t)(0x0b + 2 * input));
+    return sim_x0_peek(&chip, (uint8_t)(0x0a + 2 * input)) << 8 |
+           sim_x0_peek(&chip, (uint8_t)(0x0b + 2 * input));
 }
 
 static int ts1(void)
