@@ -47,9 +47,11 @@ typedef struct bq_clock {
  * not overlap and stay valid and untouched until the transfer has ended. `len` is 1..256; a back-end MUST
  * return BQ_E_ARG for any other. It MAY complete inside start (a polled back-end); then the next poll returns
  * BQ_OK. Returns BQ_OK (started), BQ_E_BUSY (a transfer is running; nothing was started), BQ_E_ARG, BQ_E_BUS.
+ *
  * poll: BQ_PENDING while the transfer runs, BQ_OK once after it ended well, or BQ_E_BUS / BQ_E_TIMEOUT. After
  * a negative answer CS MUST be high and the back-end ready for the next start; the content of `rx` is then
  * undefined. A back-end MUST bound its own transfer: no later than twice the nominal transfer time plus 1 ms.
+ *
  * set_clock: optional (NULL = fixed clock). Sets SCLK to at most `hz`; BQ_E_RANGE if it cannot go that low.
  *   Only called between transfers.
  */
@@ -77,11 +79,16 @@ typedef struct bq_i2c_segment {
 
 /**
  * One I2C master (standard mode).
+ *
  * start: one call is one transaction to `address7`: each segment begins with START and the address byte.
  * `segments` and their data stay valid until it has ended. Returns BQ_OK, BQ_E_BUSY, BQ_E_ARG or
- * BQ_E_ARBITRATION (bus not free). poll: BQ_PENDING, BQ_OK, BQ_E_NACK, BQ_E_ARBITRATION, BQ_E_TIMEOUT or
+ * BQ_E_ARBITRATION (bus not free).
+ *
+ * poll: BQ_PENDING, BQ_OK, BQ_E_NACK, BQ_E_ARBITRATION, BQ_E_TIMEOUT or
  * BQ_E_BUS. After any error the back-end MUST have sent STOP where it could and be ready for the next start.
- * Clock stretching MUST be tolerated up to 10 ms. recover: frees a slave that holds SDA: up to nine clocks,
+ * Clock stretching MUST be tolerated up to 10 ms.
+ *
+ * recover: frees a slave that holds SDA: up to nine clocks,
  * then STOP. Blocks for at most 200 us (ten clocks of 100 kHz take 100 us; a slave that stretches them is
  * given up). BQ_OK if SDA and SCL are high afterwards, else BQ_E_ARBITRATION.
  */
@@ -116,7 +123,8 @@ typedef enum bq_line {
 } bq_line;
 
 /**
- * read: sets `*level`. write: drives the line. Both return at once.
+ * read: sets `*level`. write: drives the line.
+ * Both return at once.
  * Both return BQ_E_UNSUPPORTED for a line this board does not have; the library then uses its documented
  * substitute (computed waiting time, polling), and BQ_E_ARG for a line outside the list.
  */
@@ -159,11 +167,15 @@ typedef enum bq_can_state {
 
 /**
  * One CAN controller (2.0A/B, data frames).
+ *
  * send: queues one frame in hardware. BQ_OK; BQ_E_BUSY (no room: try later, nothing was queued); BQ_E_BUS
  * (bus-off); BQ_E_ARG (id or len out of range). Frames of one id leave in the order of their queueing.
+ *
  * receive: takes the oldest received frame. BQ_OK; BQ_PENDING (none).
+ *
  * state: of the controller. A back-end MUST recover from bus-off by itself, no faster than the 128 times 11
  *   recessive bits of ISO 11898-1, and MUST drop frames that were queued when it went off.
+ *
  * All return at once.
  */
 typedef struct bq_can_ops {
@@ -180,7 +192,9 @@ typedef struct bq_can {
 /* ---- a stream of bytes, for the console ------------------------------------------------------ */
 
 /**
- * write: takes as many bytes as there is room for and returns their number. read: returns what has arrived,
+ * write: takes as many bytes as there is room for and returns their number.
+ *
+ * read: returns what has arrived,
  * at most `len` bytes. Both return at once; 0 = nothing now. Bytes that arrive while there is no room are
  * dropped and counted by the back-end.
  */
@@ -198,12 +212,18 @@ typedef struct bq_stream {
 
 /**
  * Two or more sectors of flash that belong to nobody else. Erased bytes read 0xff.
+ *
  * read: copies `len` bytes from `offset` of a sector. BQ_OK, BQ_E_ARG.
+ *
  * program: writes `len` bytes, `offset` and `len` multiples of `unit_bytes`, into erased units. Blocks at
  * most 100 us a unit; the library asks for one unit at a time. BQ_OK; BQ_E_ARG; BQ_E_VERIFY (does not read
- * back); BQ_E_BUS (the hardware reported an error). erase: erases one sector. MAY block up to 2 s on hardware
+ * back); BQ_E_BUS (the hardware reported an error).
+ *
+ * erase: erases one sector. MAY block up to 2 s on hardware
  * that stalls the CPU meanwhile; MUST keep the watchdog fed or outputs safe in that time. BQ_OK, BQ_E_ARG,
- * BQ_E_BUS, BQ_E_VERIFY. A loss of power at any moment may leave the unit or sector under way in any state,
+ * BQ_E_BUS, BQ_E_VERIFY.
+ *
+ * A loss of power at any moment may leave the unit or sector under way in any state,
  * and MUST leave all others as they were.
  */
 typedef struct bq_nvm_ops {
@@ -252,8 +272,11 @@ typedef struct bq_boot {
 
 /**
  * The microcontroller itself. All return at once but `reset`, which does not return.
+ *
  * feed: restarts the watchdog. Called only after a healthy cycle.
+ *
  * reset: outputs safe, then a software reset.
+ *
  * stack_free: bytes of the stack that were never used, by its paint; UINT32_MAX when unknown.
  */
 typedef struct bq_mcu_ops {
