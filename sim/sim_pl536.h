@@ -108,6 +108,21 @@ typedef struct sim_pl_spi_timing {
  * packet's effect changed. */
 void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n,
                       const sim_pl_spi_timing *timing);
+/**
+ * The same packet as hardware sends it. sim_pl_spi_select(): CS_H falls now. sim_pl_spi_byte(): eight clocks at
+ * the rate of sim_pl_set_spi_clock() end now; returns what the host received, `driven` (may be NULL) whether a
+ * device drove it (SDO_H floats otherwise: the value is then the idle level of PL-AMB-12, with CS_H high ff).
+ * sim_pl_spi_release(): CS_H rises now and a write takes effect (PL-SPI-06). Let simulated time pass between
+ * the calls: with strict_timing the times between them are judged as those of sim_pl_spi_timed().
+ * Effects, answers and injected faults are those of sim_pl_spi(), with these differences: a read is answered
+ * from the registers as they are when its third byte ends; until the answer begins, and in a write, a random
+ * flip towards the host is not shown; a packet longer than 1023 bytes is cut off there. Selecting twice or
+ * releasing twice does nothing.
+ */
+void sim_pl_spi_select(sim_pl *s);
+uint8_t sim_pl_spi_byte(sim_pl *s, uint8_t tx, bool *driven);
+void sim_pl_spi_release(sim_pl *s);
+bool sim_pl_spi_selected(const sim_pl *s);
 /** The clock, for waveforms and (with strict_timing) for the judge, which then also wants 3 us of simulated
  * time between packets. */
 void sim_pl_set_spi_clock(sim_pl *s, uint32_t hz);

@@ -210,6 +210,8 @@ typedef struct sim_pl_route {
 void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits,
                    const sim_pl_route *route);
 void sim_pl_reach(sim_pl *s);
+/** A whole packet, judged, counted and through the fault interception point. */
+void sim_pl_carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits);
 
 /* sim_bus_fault.c */
 static inline bool sim_bus_fault_idle(const sim_bus_fault *f)
@@ -223,6 +225,8 @@ void sim_pl_faulty_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *dr
 
 /* sim_pl536_pins.c */
 void sim_pl_pins_record(sim_pl *s);
+void sim_pl_record_select(sim_pl *s, bool low);
+void sim_pl_record_byte(sim_pl *s, uint8_t tx, uint8_t rx); /* eight clocks that end now */
 void sim_pl_record_packet(sim_pl *s, const uint8_t *tx, const uint8_t *rx, size_t bits);
 
 /* sim_pl536_judge.c: `state` judgements depend on what earlier packets left behind */

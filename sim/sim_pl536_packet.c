@@ -264,8 +264,11 @@ void sim_pl_packet(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, s
     }
 }
 
-static void carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits)
+void sim_pl_carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits)
 {
+    if (s->bytes.selected) {
+        s->spi_seen = false; /* the gap before is judged from chip select itself */
+    }
     sim_pl_judge_host(s, tx, bits);
     s->fault.packets++;
     s->fault.bytes += (bits + 7) / 8;
@@ -277,7 +280,7 @@ static void carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, si
     s->exempt = false;
     s->last_packet = s->now;
     s->spi_seen = true;
-    if (s->vcd != NULL) {
+    if (s->vcd != NULL && !s->bytes.selected) {
         sim_pl_record_packet(s, tx, rx, bits);
         sim_pl_pins_record(s);
     }
@@ -285,12 +288,12 @@ static void carry(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, si
 
 void sim_pl_spi_bits(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t bits)
 {
-    carry(s, tx, rx, driven, bits);
+    sim_pl_carry(s, tx, rx, driven, bits);
 }
 
 void sim_pl_spi(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n)
 {
-    carry(s, tx, rx, driven, 8 * n);
+    sim_pl_carry(s, tx, rx, driven, 8 * n);
 }
 
 void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven, size_t n,
@@ -299,7 +302,7 @@ void sim_pl_spi_timed(sim_pl *s, const uint8_t *tx, uint8_t *rx, uint8_t *driven
     s->spi_hz = timing->clock_hz != 0 ? timing->clock_hz : s->spi_hz;
     sim_pl_judge_timing(s, timing);
     s->spi_seen = false; /* the gap was given, not passed */
-    carry(s, tx, rx, driven, 8 * n);
+    sim_pl_carry(s, tx, rx, driven, 8 * n);
 }
 
 void sim_pl_set_spi_clock(sim_pl *s, uint32_t hz)

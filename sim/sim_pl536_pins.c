@@ -142,3 +142,29 @@ void sim_pl_record_packet(sim_pl *s, const uint8_t *tx, const uint8_t *rx, size_
     s->vcd_time = at;
     s->vcd_free = at + 3 * SIM_PL_US;
 }
+
+void sim_pl_record_select(sim_pl *s, bool low)
+{
+    if (s->vcd == NULL) {
+        return;
+    }
+    s->vcd_time = s->vcd_time > s->now ? s->vcd_time : s->now;
+    show(s, SIG_SDI, s->vcd_time, 0);
+    show(s, SIG_SDO, s->vcd_time, low ? (int)s->options.amb12_idle_ff : -1);
+    show(s, SIG_CS, s->vcd_time, !low);
+}
+
+void sim_pl_record_byte(sim_pl *s, uint8_t tx, uint8_t rx)
+{
+    uint64_t half = 500000000ull / s->spi_hz, length = 16 * half;
+    uint64_t at = s->now > length ? s->now - length : 0;
+
+    for (size_t i = 0; i < 8 && s->vcd != NULL; i++) {
+        show(s, SIG_SCLK, at, 1);
+        show(s, SIG_SDI, at, bit_at(&tx, i));
+        show(s, SIG_SDO, at, bit_at(&rx, i));
+        at += half;
+        show(s, SIG_SCLK, at, 0);
+        at += half;
+    }
+}

@@ -63,6 +63,15 @@ typedef struct sim_pl_dev {
     bool programmed;
 } sim_pl_dev;
 
+/** A packet that arrives byte by byte (sim_pl536_bytes.c). */
+typedef struct sim_pl_bytes {
+    bool selected, answered, faulty;
+    size_t n, expected; /**< bytes clocked; bytes of the answered read from its start */
+    uint64_t selected_at, byte_end, released_at, longest_pause, lead;
+    bool released_before;
+    uint8_t tx[SIM_PL_PACKET_MAX], rx[SIM_PL_PACKET_MAX], driven[SIM_PL_PACKET_MAX];
+} sim_pl_bytes;
+
 struct sim_pl {
     int devices;
     int reach;       /**< devices that see chip select now, counted from the base */
@@ -88,6 +97,7 @@ struct sim_pl {
     uint64_t vcd_free; /**< the next packet may begin */
     sim_bus_fault fault;
     sim_misuse misuse;
+    sim_pl_bytes bytes;
     sim_pl_dev dev[SIM_PL_MAX_DEVICES];
 };
 typedef struct sim_pl sim_pl;
