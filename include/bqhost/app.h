@@ -28,7 +28,8 @@
 extern "C" {
 #endif
 
-#define BQ_APP_BRING_UP_MS 10000u /**< a bring-up that takes longer is reported as failed with BQ_E_TIMEOUT */
+#define BQ_APP_BRING_UP_MS 10000u /**< a bring-up that takes longer is reported as failed with BQ_E_TIMEOUT  \
+                                   */
 
 typedef struct bq_app_config {
     uint32_t period_ms; /**< control period, 10..10000; comm_timeout_ms must be 2 periods or more */
@@ -53,7 +54,7 @@ typedef struct bq_app_counters {
     uint32_t bring_ups;       /**< attempts at bring-up */
     uint32_t bring_up_failures;
     uint32_t self_test_failures;
-    uint32_t line_failures;   /**< contactor or feedback accesses that failed */
+    uint32_t line_failures;    /**< contactor or feedback accesses that failed */
     uint32_t ammeter_failures; /**< ammeter readings that failed, BQ_E_STALE excepted */
 } bq_app_counters;
 
@@ -81,16 +82,16 @@ typedef struct bq_app {
     bq_action action, applied;
     bq_app_counters counters;
     bq_app_job job;
-    uint32_t last_us, rest_us, now_ms;   /* software-extended time */
-    uint32_t period_us, tick_us;         /* when the present period began */
-    uint32_t step_us, step_ms;           /* last pack step */
-    uint32_t wait_us;                    /* hint of the running job */
-    uint32_t job_ms, retry_ms, scan_ms;  /* job began, last retryable failure, last good scan */
+    uint32_t last_us, rest_us, now_ms;  /* software-extended time */
+    uint32_t period_us, tick_us;        /* when the present period began */
+    uint32_t step_us, step_ms;          /* last pack step */
+    uint32_t wait_us;                   /* hint of the running job */
+    uint32_t job_ms, retry_ms, scan_ms; /* job began, last retryable failure, last good scan */
     uint32_t current_age_ms, mismatch_ms;
     int32_t current_ma;
-    bool pausing;                        /* retry_ms is the begin of a pause */
+    bool pausing; /* retry_ms is the begin of a pause */
     bool scan_due, scan_ended, apply_due, step_now;
-    bool scanned;                        /* a scan has succeeded since the monitor is up */
+    bool scanned; /* a scan has succeeded since the monitor is up */
     bool asleep;
     bool line_on, line_failed, mismatch, mismatch_told, current_seen;
 } bq_app;
@@ -128,6 +129,35 @@ uint32_t bq_app_step(bq_app *app);
 /** What the user wants; initially BQ_REQUEST_OFF. Takes effect in the next bq_app_step(). BQ_OK; BQ_E_ARG
  *  (NULL, or not a bq_pack_request: the request stays as it was). */
 bq_status bq_app_request(bq_app *app, bq_pack_request request);
+
+/**
+ * Switches balancing off by the user's wish, or on again (initially on, not remembered over a reset). Takes
+ * effect in the next pack step; that on means "as the pack controller decides". BQ_E_ARG if `app` is NULL.
+ */
+bq_status bq_app_balance(bq_app *app, bool on);
+
+/**
+ * Asks for another self-test of the monitor, to be begun when the running job has ended. Until its result is
+ * there the pack is not in standby and cannot go on. bq_app_input()->self_test is BQ_TEST_NONE from now on
+ * until the test ended, then passed or failed. BQ_OK, also while one is under way; BQ_E_STATE: an output is
+ * on (the test forces the fault lines of the monitors), the monitor is not up or asleep; BQ_E_ARG.
+ */
+bq_status bq_app_self_test(bq_app *app);
+
+/** What the last pack step was told besides the sample, and what the next one will be: request, state of the
+ *  monitor, self-test, last statuses. Never NULL. */
+const bq_pack_input *bq_app_input(const bq_app *app);
+
+/** Configuration in use. Never NULL. */
+const bq_app_config *bq_app_get_config(const bq_app *app);
+
+/** Milliseconds since the last pack step (since init before the first), by the clock of the last
+ *  bq_app_step(). */
+uint32_t bq_app_step_age_ms(const bq_app *app);
+
+/** Modules the monitor has found, 0 before; its link statistics, NULL if it keeps none. */
+uint8_t bq_app_modules_found(const bq_app *app);
+const bq_link_stats *bq_app_link(const bq_app *app);
 
 /** The picture the last pack step saw (counts are 0 before the first), the pack controller, the last action,
  *  counters. Never NULL. */

@@ -13,6 +13,7 @@
 
 #include "bqhost/afe.h"
 #include "bqhost/bq769x0_convert.h"
+#include "bqhost/field.h"
 #include "bqhost/hal.h"
 #include "bqhost/thermistor.h"
 
@@ -131,6 +132,9 @@ bool bq769x0_alert_pending(const bq769x0 *d);
 
 /** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). */
 void bq769x0_unlock(bq769x0 *d);
+
+/** The fields of bq769x0_config that a record of the settings holds (settings.h): all but the pointers. */
+extern const bq_field_table bq769x0_config_fields;
 
 /** Fills the interface the super-loop uses. */
 bq_afe bq769x0_afe(bq769x0 *d);

@@ -26,6 +26,7 @@
 #define BQHOST_BQ76PL536_H
 
 #include "bqhost/afe.h"
+#include "bqhost/field.h"
 #include "bqhost/hal.h"
 #include "bqhost/thermistor.h"
 
@@ -232,6 +233,9 @@ const bq_link_stats *bq76pl536_stats(const bq76pl536 *d);
 const bq76pl536_diagnosis *bq76pl536_diagnose(const bq76pl536 *d);
 /** Status registers of device 1..config.devices. BQ_OK or BQ_E_ARG. */
 bq_status bq76pl536_device_flags(const bq76pl536 *d, uint8_t device, bq76pl536_flags *flags);
+
+/** The fields of bq76pl536_config that a record of the settings holds (settings.h): all but the pointers. */
+extern const bq_field_table bq76pl536_config_fields;
 
 /** Fills the interface the super-loop uses. `d` must outlive it. */
 bq_afe bq76pl536_afe(bq76pl536 *d);

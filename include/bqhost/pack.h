@@ -103,22 +103,22 @@ typedef enum bq_pack_hold {
 /** All limits. bq_pack_config_nmc() and _lfp() give a complete set; bq_pack_config_validate() states what is
  *  refused. */
 typedef struct bq_pack_config {
-    uint16_t cells;   /**< cells in series, 1..372 */
-    uint16_t sensors; /**< temperature sensors, 0..128 */
-    uint16_t modules; /**< monitor chips, 1..62 */
-    uint16_t cell_ov_mv, cell_ov_clear_mv; /**< trip above, release below; 1000..4500 (PL-VCELL-07), clear <
-                                                trip */
-    uint16_t cell_uv_mv, cell_uv_clear_mv; /**< trip below, release above; 1000..4500, trip < clear <
-                                                cell_ov_clear_mv */
-    int16_t overtemp_dc, overtemp_clear_dc;   /**< trip above, release below; -400..1250, clear < trip */
-    int16_t undertemp_dc, undertemp_clear_dc; /**< trip below, release above; -400..1250, trip < clear <
-                                                   overtemp_clear_dc */
+    uint16_t cells;                         /**< cells in series, 1..372 */
+    uint16_t sensors;                       /**< temperature sensors, 0..128 */
+    uint16_t modules;                       /**< monitor chips, 1..62 */
+    uint16_t cell_ov_mv, cell_ov_clear_mv;  /**< trip above, release below; 1000..4500 (PL-VCELL-07), clear <
+                                                 trip */
+    uint16_t cell_uv_mv, cell_uv_clear_mv;  /**< trip below, release above; 1000..4500, trip < clear <
+                                                 cell_ov_clear_mv */
+    int16_t overtemp_dc, overtemp_clear_dc; /**< trip above, release below; -400..1250, clear < trip */
+    int16_t undertemp_dc, undertemp_clear_dc;  /**< trip below, release above; -400..1250, trip < clear <
+                                                    overtemp_clear_dc */
     uint16_t imbalance_mv, imbalance_clear_mv; /**< highest minus lowest cell, up to 4500, clear < trip; both
                                                     0 = off */
-    uint16_t debounce_ms;     /**< a limit must be broken this long, by every sample in it; 0..10000; 0 = at
-                                   once */
-    uint16_t recover_ms;      /**< ... and kept this long before a fault clears by itself, 100..65535 */
-    uint16_t comm_timeout_ms; /**< oldest value that may still decide; older = outputs off; 20..30000 */
+    uint16_t debounce_ms;      /**< a limit must be broken this long, by every sample in it; 0..10000; 0 = at
+                                    once */
+    uint16_t recover_ms;       /**< ... and kept this long before a fault clears by itself, 100..65535 */
+    uint16_t comm_timeout_ms;  /**< oldest value that may still decide; older = outputs off; 20..30000 */
     uint16_t balance_start_mv; /**< spread that starts balancing, up to 1000; 0 = never balance */
     uint16_t balance_stop_mv;  /**< a cell is bled while above the lowest by more than this;
                                     1..balance_start_mv */
@@ -127,7 +127,7 @@ typedef struct bq_pack_config {
     int32_t balance_rest_ma;  /**< |current| up to this counts as rest, 0..1000000; bleeding at rest or while
                                    charging only. Where nobody measures the current, rest = outputs off */
     uint16_t balance_rest_ms; /**< rest must have lasted this long */
-    uint8_t balance_duty_percent; /**< share of steps in which bleeding is allowed, 1..100 */
+    uint8_t balance_duty_percent;   /**< share of steps in which bleeding is allowed, 1..100 */
     uint8_t balance_max_per_module; /**< cells bled at once in one module, the highest first; 0 = all */
     bool separate_paths; /**< charging and discharging are switched separately: a fault that forbids only one
                               direction leaves the other as it is (never switches it on). false = one
@@ -148,13 +148,14 @@ typedef enum bq_pack_test { BQ_TEST_NONE, BQ_TEST_PASSED, BQ_TEST_FAILED } bq_pa
 typedef struct bq_pack_input {
     bq_pack_request request;
     bq_pack_monitor monitor;
-    bq_status monitor_status;  /**< of the last bring-up, recorded with fault "config" */
-    bq_pack_test self_test;    /**< of the self-test since the last bring-up */
+    bq_status monitor_status;   /**< of the last bring-up, recorded with fault "config" */
+    bq_pack_test self_test;     /**< of the self-test since the last bring-up */
     bq_status self_test_status; /**< recorded with fault "self_test" */
-    bq_status apply_status;    /**< of the last attempt to carry out an action; negative for comm_timeout_ms =
-                                    fault "chip" */
-    bool sample_copied;        /**< the sample was copied from the monitor for this step; false = its ages are
-                                    those of an earlier step */
+    bq_status apply_status; /**< of the last attempt to carry out an action; negative for comm_timeout_ms =
+                                 fault "chip" */
+    bool sample_copied;     /**< the sample was copied from the monitor for this step; false = its ages are
+                                 those of an earlier step */
+    bool balance_off;       /**< the user wants no cell bled */
     uint32_t contactor_mismatch_ms; /**< for how long the contactor has contradicted its command; 0 = agrees
                                          or no feedback */
 } bq_pack_input;
@@ -179,11 +180,11 @@ typedef struct bq_pack_fault_record {
 } bq_pack_fault_record;
 
 typedef enum bq_pack_event_kind {
-    BQ_EVENT_STATE,       /**< code = bq_pack_state_id entered */
-    BQ_EVENT_FAULT,       /**< code = bq_pack_fault, where = cell, sensor or device (whichever the record has,
-                               in this order) */
-    BQ_EVENT_RECOVERED,   /**< code = bq_pack_fault */
-    BQ_EVENT_CHIP_FLAGS   /**< code = device, where = BQ_F_ flags that were not there in the step before */
+    BQ_EVENT_STATE,     /**< code = bq_pack_state_id entered */
+    BQ_EVENT_FAULT,     /**< code = bq_pack_fault, where = cell, sensor or device (whichever the record has,
+                             in this order) */
+    BQ_EVENT_RECOVERED, /**< code = bq_pack_fault */
+    BQ_EVENT_CHIP_FLAGS /**< code = device, where = BQ_F_ flags that were not there in the step before */
 } bq_pack_event_kind;
 
 typedef struct bq_pack_event {
@@ -196,29 +197,29 @@ typedef struct bq_pack_event {
 /** What the last step saw; for display and telemetry. Only values that may decide count; fields without any
  *  are 0. */
 typedef struct bq_pack_summary {
-    uint32_t pack_mv;              /**< sum of the cells whose value may decide */
+    uint32_t pack_mv; /**< sum of the cells whose value may decide */
     uint16_t cell_min_mv, cell_max_mv;
-    uint16_t cell_min, cell_max;   /**< their 1-based numbers, 0 = none */
+    uint16_t cell_min, cell_max; /**< their 1-based numbers, 0 = none */
     int16_t temp_min_dc, temp_max_dc;
-    uint8_t temp_min, temp_max;    /**< their 1-based numbers, 0 = none */
-    uint32_t blind_ms;             /**< longest blind time of any module */
-    int16_t soc_permille;          /**< 0..1000, -1 = not valid */
-    uint16_t balancing;            /**< cells asked to bleed */
-    bool complete;                 /**< every configured value is valid and fresh */
+    uint8_t temp_min, temp_max; /**< their 1-based numbers, 0 = none */
+    uint32_t blind_ms;          /**< longest blind time of any module */
+    int16_t soc_permille;       /**< 0..1000, -1 = not valid */
+    uint16_t balancing;         /**< cells asked to bleed */
+    bool complete;              /**< every configured value is valid and fresh */
 } bq_pack_summary;
 
 /** One pack controller, about 1.6 KB. Caller-owned; read any field, write none. */
 typedef struct bq_pack {
     bq_pack_config config;
     bq_pack_state_id state;
-    uint32_t state_ms;       /**< `now_ms` at which the state was entered */
-    uint32_t faults;         /**< bit n = bq_pack_fault n is active */
+    uint32_t state_ms; /**< `now_ms` at which the state was entered */
+    uint32_t faults;   /**< bit n = bq_pack_fault n is active */
     bq_pack_fault_record fault[BQ_FAULT_COUNT];
     bq_pack_summary summary;
     bq_soc soc;
     bq_pack_event events[BQ_PACK_EVENTS];
-    uint32_t event_count;    /**< events ever logged, wraps; the newest is at (event_count - 1) %
-                                  BQ_PACK_EVENTS */
+    uint32_t event_count; /**< events ever logged, wraps; the newest is at (event_count - 1) %
+                               BQ_PACK_EVENTS */
     /* private */
     uint32_t last_ms, sequence, copy_age_ms, sequence_age_ms;
     uint32_t blind_ms[BQ_PACK_MAX_MODULES];
