@@ -53,7 +53,11 @@ static void test_unknown_values_have_a_name_too(void)
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-5));
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-42));
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)2));
-    TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-2147483647));
+    TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-128));
+    if (sizeof(bq_status) >
+        1u) { /* a compiler may give the type a single byte, as Arm's rules for bare metal do */
+        TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-2147483647));
+    }
 }
 
 int main(void)
