@@ -51,6 +51,11 @@ expect 0 '^PL-HW +1 +0 +0 +1 ' 'a board row is not testable here'
 expect 0 'unit/a/test_a.c:1: test_a' 'the tests of a row are named' --where PL-CRC-01
 rm "$tree/tests/conformance/pl536_a/test_b.c"
 expect 0 '^PL-CRC-01 \[SD\] simulator side not proven' 'a row proven on one side only is listed' --list
+fresh
+mv "$tree/tests/conformance/pl536_a" "$tree/tests/conformance/x0_driver"
+expect 0 '^PL-CRC-01 \[SD\] simulator side not proven' 'the tests of a driver are not the simulator side' --list
+mv "$tree/tests/conformance/x0_driver" "$tree/tests/conformance/x0_sim_a"
+expect 0 '^PL-CRC +3 +2 +0 +1 +1 +1 +1$' 'those of either model are'
 
 fresh
 sed -i 's/PL-CRC-02/PL-CRC-99/' "$tree/tests/unit/a/test_a.c"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench.h"
+#include "rows.h"
 #include <stdio.h>
 
 bench b;
@@ -42,16 +43,37 @@ static void note_write(bench_entry *e, const uint8_t *p, uint16_t len)
     e->wrote = (uint8_t)n;
 }
 
+static void on_wire(const char *token, unsigned byte)
+{
+    if (b.wire_used + 8 < sizeof b.wire)
+        b.wire_used += (size_t)snprintf(b.wire + b.wire_used, sizeof b.wire - b.wire_used, token, byte);
+}
+
+static bool send_byte(uint8_t byte)
+{
+    bool ack = sim_x0_i2c_write(&b.chip, byte);
+    on_wire(ack ? "%02x+ " : "%02x- ", byte);
+    return ack;
+}
+
+static void stop(void)
+{
+    sim_x0_i2c_stop(&b.chip);
+    on_wire("P ", 0);
+}
+
 static bool bytes_go(const bq_i2c_segment *s, uint8_t address7, uint16_t limit)
 {
     uint16_t i;
     sim_x0_i2c_start(&b.chip);
-    if (!sim_x0_i2c_write(&b.chip, (uint8_t)(address7 << 1 | (s->read ? 1 : 0))))
+    on_wire("S ", 0);
+    if (!send_byte((uint8_t)(address7 << 1 | (s->read ? 1 : 0))))
         return false;
     for (i = 0; i < s->len && i < limit; i++) {
-        if (s->read)
+        if (s->read) {
             s->data[i] = sim_x0_i2c_read(&b.chip, i + 1 < s->len);
-        else if (!sim_x0_i2c_write(&b.chip, s->data[i]))
+            on_wire("%02x ", s->data[i]);
+        } else if (!send_byte(s->data[i]))
             return false;
     }
     return limit >= s->len;
@@ -68,11 +90,11 @@ static bq_status carry_out(uint8_t address7, const bq_i2c_segment *s, size_t cou
     for (i = 0; i < count && result == BQ_OK; i++) {
         if (!bytes_go(&s[i], address7, limit))
             result = BQ_E_NACK;
-        if (s[i].stop_after || i + 1 == count)
-            sim_x0_i2c_stop(&b.chip);
+        if (result == BQ_OK && (s[i].stop_after || i + 1 == count))
+            stop();
     }
     if (result != BQ_OK)
-        sim_x0_i2c_stop(&b.chip);
+        stop();
     return result;
 }
 
@@ -241,7 +263,7 @@ void bench_part(const char *name, const sim_x0_options *options)
 
 static uint16_t wiring(void)
 {
-    return b.cfg.wiring ? b.cfg.wiring : bq769x0_wiring(b.cfg.inputs, b.cfg.cells);
+    return b.cfg.wiring ? b.cfg.wiring : rows_wiring(b.cfg.inputs, b.cfg.cells);
 }
 
 void bench_cells(double volts)

@@ -54,7 +54,6 @@ typedef struct bench {
     spoil spoil_kind;
     uint32_t spoil_count; /* so many in a row, 0 counts as 1 */
     int flip_bit;
-    uint64_t spoil_from, spoil_until; /* of log numbers: spoiled in between */
     uint64_t count;
     uint32_t overlaps, recoveries, rises, falls;
     uint64_t rise_ns, fall_ns;
@@ -64,6 +63,8 @@ typedef struct bench {
     uint32_t stuck_pending;        /* polls that never end */
     void (*hook)(struct bench *b); /* before each transaction */
     bench_entry log[LOG_MAX];
+    char wire[1 << 16]; /* bytes since wire_used was set to 0, in the notation of the rows */
+    size_t wire_used;
     /* picture */
     bq_cell_reading cells[16];
     bq_temp_reading temps[4];
