@@ -2,6 +2,7 @@
 #include "unity.h"
 #include <setjmp.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct {
@@ -29,6 +30,10 @@ int UnityEnd(void)
 
 void UnityDefaultTestRun(void (*function)(void), const char *name, int line)
 {
+    const char *only = getenv("UNITY_ONLY");
+    if (only != NULL && strcmp(only, name) != 0) {
+        return;
+    }
     unity.test = name;
     unity.tests++;
     unity.ended_early = 0;

@@ -4,6 +4,7 @@
  * A small test harness with the names of Unity, so that every test of this tree also compiles against the real one.
  * A test program defines setUp() and tearDown(), runs its functions with RUN_TEST between UNITY_BEGIN and UNITY_END,
  * and returns the value of UNITY_END (number of failures, at most 255; 1 if no test ran). A failed assertion ends its test function.
+ * With UNITY_ONLY=NAME in the environment only that function runs.
  */
 #ifndef UNITY_H
 #define UNITY_H

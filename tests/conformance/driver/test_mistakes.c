@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The mistakes that drivers of this chip are known for, the holes of the CRC, and what real hardware does. */
 #include "bench.h"
+#include "bqhost/pack.h"
 
 /* A host whose answers the test writes: the hook replies to every read of `device` with these bytes. */
 struct forged {
@@ -130,6 +131,35 @@ static void every_flipped_bit_of_a_burst_is_caught(void)
     }
 }
 
+/* Flips one bit of the answer of packet number `packet` of the next scan. */
+static void scan_with_a_flip(uint32_t packet, int bit)
+{
+    bq_status status;
+    bench_mark();
+    EXPECT_STATUS(BQ_OK, b.afe.ops->scan(b.afe.ctx));
+    do {
+        sim_pl_bus_fault(&b.pl)->flip_miso_bit = b.packets == packet - 1 ? bit : 0;
+        status = b.afe.ops->poll(b.afe.ctx, NULL);
+        sim_pl_advance(&b.pl, 10000);
+    } while (status == BQ_PENDING);
+    sim_pl_bus_fault(&b.pl)->flip_miso_bit = 0;
+    bench_sample();
+}
+
+/* proves: PL-CRC-11, PL-SEQ-00-01 */
+static void every_register_read_is_checked(void)
+{
+    bench_ready(2, NULL);
+    for (int i = 0; i < 40; i++) { /* every other scan looks at the configuration of a device */
+        bench_wait_ms(500);
+        bench_scan();
+        bench_wait_ms(500);
+        scan_with_a_flip((uint32_t)(4 + i % 4), 1 + 24 + i % 16);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, MODULE(1)->faults | MODULE(2)->faults, bench_text("scan %d", i));
+    }
+    TEST_ASSERT_TRUE(b.afe.ops->stats(b.afe.ctx)->crc_errors >= 10); /* there were some to damage */
+}
+
 /* proves: PL-CRC-14 */
 static void pairs_127_bits_apart_pass_the_crc_and_the_second_line_holds_what_it_can(void)
 {
@@ -209,6 +239,13 @@ static void a_tall_stack_does_not_wrap(void)
         sum += MODULE(d)->stack_mv;
     }
     TEST_ASSERT_INT_WITHIN(200, 62 * 24600, sum);
+    static bq_pack pack;
+    bq_pack_config limits = bq_pack_config_nmc(372, b.sample.temp_count, 62);
+    bq_pack_input input = {.monitor = BQ_MONITOR_UP};
+    bq_action action;
+    EXPECT_STATUS(BQ_OK, bq_pack_init(&pack, &limits));
+    bq_pack_step(&pack, &b.sample, &input, 100, &action);
+    TEST_ASSERT_INT_WITHIN(200, 62 * 24600, pack.summary.pack_mv);
 }
 
 /* proves: PL-SEQ-03-09, PL-G3-10, PL-CRC-11 */
@@ -300,6 +337,7 @@ int main(void)
     RUN_TEST(a_bus_of_one_level_with_a_right_crc_is_no_answer);
     RUN_TEST(impossible_content_is_rejected);
     RUN_TEST(every_flipped_bit_of_a_burst_is_caught);
+    RUN_TEST(every_register_read_is_checked);
     RUN_TEST(pairs_127_bits_apart_pass_the_crc_and_the_second_line_holds_what_it_can);
     RUN_TEST(values_of_a_lost_device_grow_old);
     RUN_TEST(the_lock_up_is_impossible_on_any_way);
