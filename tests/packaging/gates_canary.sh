@@ -10,7 +10,8 @@ spdx='/* SPDX-License-Identifier: Apache-2.0 */'
 
 fresh() {
     rm -rf "$tree"
-    for d in include/bqhost src/core src/pack src/app drivers/bq76pl536 hal/sim hal/template sim tests/unit tools; do
+    for d in include/bqhost src/core src/pack src/app drivers/bq76pl536 hal/sim hal/template sim tests/unit tools \
+        hal/stm32 hal/stm32f0 hal/stm32f4 hal/boards/b; do
         mkdir -p "$tree/$d"
     done
     put include/bqhost/crc.h '/* a free-running double buffer */' '#include <stdint.h>'
@@ -21,6 +22,11 @@ fresh() {
     put drivers/bq76pl536/d.c '#include "bqhost/afe.h"' '#include <string.h>'
     put hal/sim/hal_sim.c '#include "bqhost/hal.h"' '#include "sim_chip.h"' 'double volts = 1.5;'
     put hal/template/t.c '#include "bqhost/hal.h"' '#include <my_registers.h>'
+    put hal/stm32/stm32_time.h ''
+    put hal/stm32/stm32_time.c '#include "bqhost/hal.h"' '#include "stm32_chip.h"'
+    put hal/stm32f0/stm32_chip.h '#include "stm32_time.h"'
+    put hal/stm32f4/stm32f4_spi.h ''
+    put hal/boards/b/main.c '#include "bqhost/bq76pl536.h"' '#include "stm32_time.h"' '#include "stm32f4_spi.h"'
     put sim/sim_chip.h '#include <math.h>'
     put sim/sim_chip.c '#include "sim_chip.h"'
     put tests/unit/t.c 'TEST_ASSERT_EQUAL(1, 1);' '/* TEST_ASSERT_SAME */'
@@ -74,6 +80,12 @@ put src/pack/pack.c '#include "bqhost/bq76pl536.h"';        red arrows src/pack/
 put src/app/app.c '#include "bqhost/bq76pl536.h"';          red arrows src/app/app.c:2 'the loop knows a chip'
 put hal/template/t.c '#include "bqhost/afe.h"';             red arrows hal/template/t.c:2 'a back-end knows a driver'
 put hal/template/t.c '#include "sim_chip.h"';               red arrows hal/template/t.c:2 'the template knows the simulator'
+put hal/stm32/stm32_time.c '#include "bqhost/app.h"';        red arrows hal/stm32/stm32_time.c:2 'a microcontroller back-end knows the loop'
+put hal/stm32/stm32_time.c '#include "stm32f4_spi.h"';      red arrows hal/stm32/stm32_time.c:2 'the common half knows one family'
+put hal/stm32f0/stm32_chip.h '#include "stm32f4_spi.h"';    red arrows hal/stm32f0/stm32_chip.h:2 'one family knows the other'
+put hal/stm32f0/stm32_chip.h 'int x = 2 * (float)1;';       red words hal/stm32f0/stm32_chip.h:2 'float in a microcontroller back-end'
+put hal/boards/b/main.c '#include "sim_chip.h"';            red arrows hal/boards/b/main.c:2 'a board knows the simulator'
+echo 'MEMORY {}' >"$tree/hal/boards/b/link.ld";             red spdx hal/boards/b/link.ld:1 'no licence line in a linker script'
 awk 'BEGIN { print "/* SPDX-License-Identifier: Apache-2.0 */"; for (i = 0; i < 500; i++) print "" }' >"$tree/tools/t.c"
 red length tools/t.c:501 'a file of 501 lines'
 echo 'int x;' >"$tree/sim/sim_chip.c";                      red spdx sim/sim_chip.c:1 'no licence line'

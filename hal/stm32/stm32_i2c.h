@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file stm32_i2c.h
+ * I2C1 as master at 100 kHz, interrupt-driven, below bq_i2c. The state machine is of the family: version 2 of
+ * the peripheral in the F0, version 1 in the F4. Shared: arguments, the limit of a transaction, recovery of
+ * the bus by hand.
+ */
+#ifndef STM32_I2C_H
+#define STM32_I2C_H
+
+#include "bqhost/hal.h"
+#include "stm32_time.h"
+
+/** One bus; the board owns it. */
+typedef struct stm32_i2c {
+    stm32_time *time;
+    uint8_t port, scl, sda, af; /* the pins, for recovery */
+    uint8_t address7;
+    const bq_i2c_segment *segments;
+    uint8_t count, index; /* segments, the present one */
+    uint16_t done;        /* bytes of the present segment that have moved */
+    uint32_t from_us, limit_us;
+    volatile bool busy;        /* a transaction runs */
+    bool owed;                 /* its outcome has not been told yet */
+    volatile bq_status result; /* of the transaction; BQ_OK until something failed */
+} stm32_i2c;
+
+/** Clocks I2C1 and starts it. The pins `scl`, `sda` of `port` come from the board's table as alternate
+ * function `af`, open drain. */
+void stm32_i2c_init(stm32_i2c *i2c, stm32_time *time, unsigned port, unsigned scl, unsigned sda, unsigned af);
+
+/** For the board's I2C1 handlers (one vector on the F0, event and error on the F4; each may call it). Reports
+ * an event to `time` when a transaction has ended. */
+void stm32_i2c_irq(stm32_i2c *i2c);
+
+/** start, poll, recover as in bqhost/hal.h. A transaction that has not ended after its nominal time and a
+ * half plus 10 ms of stretching is cut off (BQ_E_TIMEOUT): the peripheral is reset and releases both lines.
+ */
+bq_i2c stm32_i2c_bus(stm32_i2c *i2c);
+
+/* ---- shared by both generations, for their source files
+ * ------------------------------------------------------ */
+
+/** True if start may take these arguments: 1..255 segments, data where there is a length, no empty read, an
+ * address of 7 bits. */
+bool stm32_i2c_legal(uint8_t address7, const bq_i2c_segment *segments, size_t count);
+/** Longest time the transaction may take. */
+uint32_t stm32_i2c_limit_us(const bq_i2c_segment *segments, size_t count);
+/** Whether both lines are high at the pins. */
+bool stm32_i2c_lines_free(const stm32_i2c *i2c);
+/** Up to nine clocks and a STOP by hand while the peripheral is off; the pins are alternate functions again
+ * afterwards. At most 200 us. BQ_OK: both lines are high; else BQ_E_ARBITRATION. */
+bq_status stm32_i2c_free_lines(const stm32_i2c *i2c);
+
+#endif

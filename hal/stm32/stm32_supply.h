@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file stm32_supply.h
+ * The programmable voltage detector: while the supply is low no write to flash begins.
+ */
+#ifndef STM32_SUPPLY_H
+#define STM32_SUPPLY_H
+
+#include <stdbool.h>
+
+/** Switches the detector on at the highest level (F0: 2.8 V falling, F4: 2.8 V falling). */
+void stm32_supply_init(void);
+/** False while the supply is below the level. */
+bool stm32_supply_ok(void);
+
+#endif

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* I2C1 of the STM32F072, version 2 of the peripheral, as interrupt-driven master (RM0091 26.4.8). */
+#include "stm32_chip.h"
+#include "stm32_i2c.h"
+#include "stm32f0_i2c_timing.h"
+#include "stm32f0_regs.h"
+
+#define INTERRUPTS                                                                                           \
+    (STM32_I2C_CR1_TXIE | STM32_I2C_CR1_RXIE | STM32_I2C_CR1_NACKIE | STM32_I2C_CR1_STOPIE |                 \
+     STM32_I2C_CR1_TCIE | STM32_I2C_CR1_ERRIE)
+#define CHUNK (0xffu << STM32_I2C_CR2_NBYTES_SHIFT | STM32_I2C_CR2_RELOAD | STM32_I2C_CR2_AUTOEND)
+
+/* PE low for three cycles of APB and more resets the state machine and releases the lines. */
+static void peripheral_off(void)
+{
+    STM32_I2C1->cr1 = 0;
+    for (int i = 0; i < 3; i++) {
+        (void)STM32_I2C1->cr1;
+    }
+}
+
+static void peripheral_on(void)
+{
+    STM32_I2C1->timingr = STM32_I2C_TIMINGR;
+    STM32_I2C1->cr1 = STM32_I2C_CR1_PE; /* the analog filter is on after reset */
+}
+
+void stm32_i2c_init(stm32_i2c *i2c, stm32_time *time, unsigned port, unsigned scl, unsigned sda, unsigned af)
+{
+    *i2c = (stm32_i2c){
+        .time = time, .port = (uint8_t)port, .scl = (uint8_t)scl, .sda = (uint8_t)sda, .af = (uint8_t)af};
+    STM32_RCC_CFGR3 &= ~STM32_RCC_CFGR3_I2C1SW;
+    stm32_apb1_enable(STM32_APB1_I2C1);
+    peripheral_off();
+    peripheral_on();
+    stm32_irq_enable(STM32_IRQ_I2C1, 1);
+}
+
+/* ---- the transaction
+ * ------------------------------------------------------------------------------------------ */
+
+static const bq_i2c_segment *present(const stm32_i2c *i2c)
+{
+    return &i2c->segments[i2c->index];
+}
+
+static bool is_last(const stm32_i2c *i2c)
+{
+    return i2c->index + 1u == i2c->count;
+}
+
+/* Count and ending of the next at most 255 bytes. Without AUTOEND the bus is held after them (TC) for a
+ * repeated START. */
+static uint32_t chunk(const stm32_i2c *i2c)
+{
+    const bq_i2c_segment *s = present(i2c);
+    uint32_t left = (uint32_t)(s->len - i2c->done);
+    if (left > 255u) {
+        return 255u << STM32_I2C_CR2_NBYTES_SHIFT | STM32_I2C_CR2_RELOAD;
+    }
+    return left << STM32_I2C_CR2_NBYTES_SHIFT | (s->stop_after || is_last(i2c) ? STM32_I2C_CR2_AUTOEND : 0u);
+}
+
+static void begin_segment(stm32_i2c *i2c)
+{
+    i2c->done = 0;
+    STM32_I2C1->cr2 = (uint32_t)i2c->address7 << STM32_I2C_CR2_SADD7_SHIFT |
+                      (present(i2c)->read ? STM32_I2C_CR2_RD_WRN : 0u) | chunk(i2c) | STM32_I2C_CR2_START;
+}
+
+static void end(stm32_i2c *i2c)
+{
+    STM32_I2C1->cr1 = STM32_I2C_CR1_PE;
+    i2c->busy = false;
+    stm32_time_event(i2c->time);
+}
+
+static void cut_off(stm32_i2c *i2c, bq_status why)
+{
+    i2c->result = why;
+    peripheral_off();
+    peripheral_on();
+    end(i2c);
+}
+
+static void move_byte(stm32_i2c *i2c, uint32_t isr)
+{
+    const bq_i2c_segment *s = present(i2c);
+    if ((isr & STM32_I2C_ISR_RXNE) != 0u) {
+        uint8_t byte = (uint8_t)STM32_I2C1->rxdr;
+        if (s->read && i2c->done < s->len) {
+            s->data[i2c->done++] = byte;
+        }
+    }
+    if ((isr & STM32_I2C_ISR_TXIS) != 0u) {
+        STM32_I2C1->txdr = i2c->done < s->len ? s->data[i2c->done++] : 0xffu;
+    }
+}
+
+static void next_segment(stm32_i2c *i2c)
+{
+    i2c->index++;
+    begin_segment(i2c);
+}
+
+/* After a NACK the master sends STOP by itself, with and without AUTOEND; TXDR may hold a byte that nobody
+ * wants. */
+static void take_nack(stm32_i2c *i2c)
+{
+    STM32_I2C1->icr = STM32_I2C_ISR_NACKF;
+    STM32_I2C1->isr = STM32_I2C_ISR_TXE;
+    i2c->result = BQ_E_NACK;
+}
+
+static void take_stop(stm32_i2c *i2c)
+{
+    STM32_I2C1->icr = STM32_I2C_ISR_STOPF;
+    if (i2c->result == BQ_OK && !is_last(i2c)) {
+        next_segment(i2c);
+    } else {
+        end(i2c);
+    }
+}
+
+void stm32_i2c_irq(stm32_i2c *i2c)
+{
+    uint32_t isr = STM32_I2C1->isr;
+    if (!i2c->busy) {
+        STM32_I2C1->cr1 = STM32_I2C_CR1_PE;
+        return;
+    }
+    if ((isr & (STM32_I2C_ISR_ARLO | STM32_I2C_ISR_BERR)) != 0u) {
+        cut_off(i2c, (isr & STM32_I2C_ISR_ARLO) != 0u ? BQ_E_ARBITRATION : BQ_E_BUS);
+        return;
+    }
+    move_byte(i2c, isr);
+    if ((isr & STM32_I2C_ISR_NACKF) != 0u) {
+        take_nack(i2c);
+    } else if ((isr & STM32_I2C_ISR_TCR) != 0u) {
+        STM32_I2C1->cr2 = (STM32_I2C1->cr2 & ~CHUNK) | chunk(i2c);
+    } else if ((isr & STM32_I2C_ISR_TC) != 0u) {
+        next_segment(i2c);
+    }
+    if ((isr & STM32_I2C_ISR_STOPF) != 0u) {
+        take_stop(i2c);
+    }
+}
+
+/* ---- bq_i2c
+ * ----------------------------------------------------------------------------------------------------- */
+
+static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *segments, size_t count)
+{
+    stm32_i2c *i2c = ctx;
+    if (!stm32_i2c_legal(address7, segments, count)) {
+        return BQ_E_ARG;
+    }
+    if (i2c->busy || i2c->owed) {
+        return BQ_E_BUSY;
+    }
+    if ((STM32_I2C1->isr & STM32_I2C_ISR_BUSY) != 0u || !stm32_i2c_lines_free(i2c)) {
+        return BQ_E_ARBITRATION;
+    }
+    i2c->address7 = address7;
+    i2c->segments = segments;
+    i2c->count = (uint8_t)count;
+    i2c->index = 0;
+    i2c->result = BQ_OK;
+    i2c->limit_us = stm32_i2c_limit_us(segments, count);
+    i2c->from_us = stm32_now_us();
+    i2c->owed = true;
+    i2c->busy = true;
+    STM32_I2C1->cr1 = STM32_I2C_CR1_PE | INTERRUPTS;
+    begin_segment(i2c);
+    return BQ_OK;
+}
+
+static bq_status i2c_poll(void *ctx)
+{
+    stm32_i2c *i2c = ctx;
+    uint32_t mask = stm32_lock();
+    if (i2c->busy && stm32_now_us() - i2c->from_us > i2c->limit_us) {
+        cut_off(i2c, BQ_E_TIMEOUT);
+    }
+    stm32_unlock(mask);
+    if (i2c->busy) {
+        return BQ_PENDING;
+    }
+    if (!i2c->owed) {
+        return BQ_OK;
+    }
+    i2c->owed = false;
+    return i2c->result;
+}
+
+static bq_status i2c_recover(void *ctx)
+{
+    stm32_i2c *i2c = ctx;
+    bq_status st;
+    if (i2c->busy) {
+        uint32_t mask = stm32_lock();
+        cut_off(i2c, BQ_E_BUS);
+        stm32_unlock(mask);
+    }
+    peripheral_off();
+    st = stm32_i2c_free_lines(i2c);
+    peripheral_on();
+    return st;
+}
+
+bq_i2c stm32_i2c_bus(stm32_i2c *i2c)
+{
+    static const bq_i2c_ops ops = {i2c_start, i2c_poll, i2c_recover};
+    bq_i2c bus = {&ops, i2c};
+    return bus;
+}
