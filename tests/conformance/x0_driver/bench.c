@@ -98,10 +98,16 @@ static bq_status carry_out(uint8_t address7, const bq_i2c_segment *s, size_t cou
     return result;
 }
 
-static spoil what_happens(void)
+static spoil what_happens(const bench_entry *e)
 {
     uint32_t n = b.spoil_count ? b.spoil_count : 1;
-    if (b.spoil_at == 0 || b.count < b.spoil_at || b.count >= b.spoil_at + n)
+    uint64_t at = b.count;
+    if (b.spoil_writes) { /* counts only these */
+        bool hit = e->wrote > 0 && e->reg == b.spoil_reg;
+        b.spoil_seen += hit;
+        at = hit ? b.spoil_seen : 0;
+    }
+    if (b.spoil_at == 0 || at < b.spoil_at || at >= b.spoil_at + n)
         return SPOIL_NONE;
     return b.spoil_kind;
 }
@@ -157,7 +163,7 @@ static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *s,
         else if (s[i].len > 0)
             note_write(e, s[i].data, s[i].len);
     }
-    how = what_happens();
+    how = what_happens(e);
     if (b.never_free || how == SPOIL_REFUSED)
         return e->status = BQ_E_ARBITRATION;
     if (how == SPOIL_BUSY)

@@ -53,6 +53,9 @@ typedef struct bench {
     uint64_t spoil_at; /* number of the transaction, counted from 1; 0 = none */
     spoil spoil_kind;
     uint32_t spoil_count; /* so many in a row, 0 counts as 1 */
+    bool spoil_writes;    /* spoil_at is the number of the write to spoil_reg instead */
+    uint8_t spoil_reg;
+    uint64_t spoil_seen;
     int flip_bit;
     uint64_t count;
     uint32_t overlaps, recoveries, rises, falls;
