@@ -87,6 +87,9 @@ void emu_set_supply_mv(emu *e, unsigned mv);
 /** The crystal: false = it does not oscillate (from now on; running it fails at once, which the clock
  * security system sees). Initially true. */
 void emu_set_crystal(emu *e, bool works);
+/** The internal slow oscillator that drives the watchdog, initially 40 kHz (F0) or 32 kHz (F4); it is
+ * inaccurate (30..60 and 17..47 kHz). From the next refresh on. */
+void emu_set_lsi_hz(emu *e, uint32_t hz);
 /**
  * Power is lost during the n-th flash operation from now (1 = the next; a half-word of F0, a unit of PSIZE of
  * F4, or the erase of a page or sector; 0 = never). That operation is left half done: of a program any bits
