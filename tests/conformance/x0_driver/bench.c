@@ -90,7 +90,7 @@ static bq_status carry_out(uint8_t address7, const bq_i2c_segment *s, size_t cou
     for (i = 0; i < count && result == BQ_OK; i++) {
         if (!bytes_go(&s[i], address7, limit))
             result = BQ_E_NACK;
-        if (result == BQ_OK && (s[i].stop_after || i + 1 == count))
+        if (result == BQ_OK && (s[i].stop_after || i + 1 == count || b.no_restart))
             stop();
     }
     if (result != BQ_OK)

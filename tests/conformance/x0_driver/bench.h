@@ -50,6 +50,7 @@ typedef struct bench {
     uint32_t missing;  /* lines the board does not have */
     bool never_free;   /* start always answers BQ_E_ARBITRATION, recover does not help */
     bool no_power;     /* nobody acknowledges */
+    bool no_restart;   /* a controller that cannot repeat a START: STOP and START instead (Fig. 7-6) */
     uint64_t spoil_at; /* number of the transaction, counted from 1; 0 = none */
     spoil spoil_kind;
     uint32_t spoil_count; /* so many in a row, 0 counts as 1 */
