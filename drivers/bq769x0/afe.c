@@ -37,13 +37,13 @@ static bq_status x0_afe_ship(void *ctx)
     return bq769x0_begin_ship(ctx);
 }
 
-static uint8_t modules_found(void *ctx)
+static uint8_t x0_afe_modules_found(void *ctx)
 {
     const bq769x0 *d = ctx;
     return d->state == X0_STATE_READY ? 1u : 0u;
 }
 
-static const bq_link_stats *stats(void *ctx)
+static const bq_link_stats *x0_afe_stats(void *ctx)
 {
     const bq769x0 *d = ctx;
     return &d->stats;
@@ -51,8 +51,9 @@ static const bq_link_stats *stats(void *ctx)
 
 bq_afe bq769x0_afe(bq769x0 *d)
 {
-    static const bq_afe_ops ops = {x0_afe_start,     x0_afe_scan, x0_afe_poll,  x0_afe_sample, x0_afe_apply,
-                                   x0_afe_self_test, x0_afe_ship, x0_afe_start, modules_found, stats};
+    static const bq_afe_ops ops = {x0_afe_start,         x0_afe_scan,      x0_afe_poll, x0_afe_sample,
+                                   x0_afe_apply,         x0_afe_self_test, x0_afe_ship, x0_afe_start,
+                                   x0_afe_modules_found, x0_afe_stats};
     bq_afe afe = {&ops, d};
     return afe;
 }

@@ -28,8 +28,9 @@
 extern "C" {
 #endif
 
-#define BQ_APP_BRING_UP_MS 10000u /**< a bring-up that takes longer is reported as failed with BQ_E_TIMEOUT  \
-                                   */
+#define BQ_APP_BRING_UP_MS                                                                                   \
+    10000u /**< a bring-up that takes longer is reported as failed with BQ_E_TIMEOUT                         \
+            */
 
 typedef struct bq_app_config {
     uint32_t period_ms; /**< control period, 10..10000; comm_timeout_ms must be 2 periods or more */

@@ -27,7 +27,7 @@ extern "C" {
 
 #define BQ_CONSOLE_LINE 40u      /**< longest line */
 #define BQ_CONSOLE_HISTORY 5u    /**< lines remembered */
-#define BQ_CONSOLE_ROW 96u       /**< longest row of output */
+#define BQ_CONSOLE_ROW 112u      /**< longest row of output */
 #define BQ_CONSOLE_WAIT_US 2000u /**< the stream took nothing: the next try */
 
 /** What the commands are about. Owned by the caller. */
@@ -46,18 +46,18 @@ typedef struct bq_console_target {
 typedef struct bq_console {
     /* private */
     bq_stream stream;
-    char line[BQ_CONSOLE_LINE + 1u];
-    char history[BQ_CONSOLE_HISTORY][BQ_CONSOLE_LINE + 1u]; /* newest first, "" = none */
-    char out[BQ_CONSOLE_ROW];
+    uint16_t row;  /* next row of the running command */
+    uint16_t item; /* and where in its list it stands */
     uint8_t out_len, out_sent;
     uint8_t len, cursor;
-    uint8_t recalled; /* 0 = the line itself, n = history[n - 1] */
+    uint8_t recalled; /* 0 = the line itself, n = history[n] */
     uint8_t escape;   /* state of an escape sequence */
     uint8_t command;  /* running, 0 = none */
     uint8_t held;     /* input byte read ahead, valid with has_held */
     bool has_held, after_cr;
-    uint16_t row;  /* next row of the running command */
-    uint16_t item; /* and where in its list it stands */
+    char line[BQ_CONSOLE_LINE + 1u];
+    char out[BQ_CONSOLE_ROW];
+    char history[BQ_CONSOLE_HISTORY + 1u][BQ_CONSOLE_LINE + 1u]; /* the line being typed, then newest first */
 } bq_console;
 
 /** Greets and prompts in the first steps. `stream` is copied; NULL or `ops` NULL: there is none, and every

@@ -60,17 +60,16 @@ typedef struct bq_board {
 /** One firmware. Caller-owned; read it with the functions of app.h through bq_firmware_app(). */
 typedef struct bq_firmware {
     /* private */
-    bq_app app;
-    bq_board board;
-    bq_console console;
-    bq_console_target target;
-    bq_telemetry telemetry;
+    uint32_t last_us, rest_us, now_ms; /* the clock, extended */
+    uint32_t step_ms, fed_ms, high_ms, reset_ms, safe_ms;
+    bq_pack_request request; /* of bq_firmware_request() */
+    bool high, resetting, busy, safe_running, safe_done;
     bq_telemetry_source source;
-    bq_pack_request request;           /* of bq_firmware_request() */
-    uint32_t last_us, rest_us, now_ms; /* extended time; the app's own where there is one */
-    uint32_t fed_ms, high_ms, reset_ms, safe_ms;
-    bool high, resetting, turn;
-    bool safe_running, safe_done;
+    bq_console_target target;
+    bq_board board;
+    bq_telemetry telemetry;
+    bq_console console;
+    bq_app app;
 } bq_firmware;
 
 /**

@@ -84,7 +84,7 @@ typedef struct bq_telemetry {
     uint16_t due; /* bit n = bq_telemetry_id n */
     uint16_t index;
     uint8_t running;
-    bool started, waiting;
+    bool started, have_sample;
 } bq_telemetry;
 
 /** Everything of the first period is due. `can->ops` NULL, or `can` NULL: no controller, nothing is ever

@@ -279,7 +279,59 @@ bq_status bq_app_request(bq_app *app, bq_pack_request request)
     return BQ_OK;
 }
 
+bq_status bq_app_balance(bq_app *app, bool on)
+{
+    if (app == NULL) {
+        return BQ_E_ARG;
+    }
+    app->input.balance_off = !on;
+    return BQ_OK;
+}
+
+bq_status bq_app_self_test(bq_app *app)
+{
+    if (app == NULL) {
+        return BQ_E_ARG;
+    }
+    if (app->input.monitor != BQ_MONITOR_UP || app->line_on || app->action.charge_on ||
+        app->action.discharge_on || app->action.sleep) {
+        return BQ_E_STATE;
+    }
+    app->input.self_test = BQ_TEST_NONE;
+    app->pausing = false;
+    return BQ_OK;
+}
+
 /* ---- reading --------------------------------------------------------------------------------- */
+
+const bq_pack_input *bq_app_input(const bq_app *app)
+{
+    return &app->input;
+}
+
+const bq_app_config *bq_app_get_config(const bq_app *app)
+{
+    return &app->config;
+}
+
+uint32_t bq_app_step_age_ms(const bq_app *app)
+{
+    return app->now_ms - app->step_ms;
+}
+
+uint8_t bq_app_modules_found(const bq_app *app)
+{
+    const bq_afe_ops *ops = app->afe.ops;
+
+    return ops->modules_found != NULL ? ops->modules_found(app->afe.ctx) : (uint8_t)0;
+}
+
+const bq_link_stats *bq_app_link(const bq_app *app)
+{
+    const bq_afe_ops *ops = app->afe.ops;
+
+    return ops->stats != NULL ? ops->stats(app->afe.ctx) : NULL;
+}
 
 const bq_sample *bq_app_sample(const bq_app *app)
 {

@@ -22,8 +22,9 @@ static bool permitted(const bq_pack *p, const bq_picture *v, const bq_pack_input
 {
     const bq_pack_config *k = &p->config;
 
-    return (p->state == BQ_PACK_STANDBY || p->state == BQ_PACK_ON) && in->monitor == BQ_MONITOR_UP &&
-           p->summary.complete && !bq_pack_pending(p) && k->balance_start_mv != 0u &&
+    return !in->balance_off && (p->state == BQ_PACK_STANDBY || p->state == BQ_PACK_ON) &&
+           in->monitor == BQ_MONITOR_UP && p->summary.complete && !bq_pack_pending(p) &&
+           k->balance_start_mv != 0u &&
            (p->summary.temp_max == 0u || p->summary.temp_max_dc <= k->balance_max_temp_dc) &&
            (charging(p, v) || (p->resting && p->rest_ms >= k->balance_rest_ms));
 }

@@ -3,8 +3,9 @@
 #include "ps_rig.h"
 
 #define SCAN (250 * PS_MS)
-#define NOISE_UV_RMS 200.0 /* about half a code: no converter is silent, and a silent one counts as stopped  \
-                            */
+#define NOISE_UV_RMS                                                                                         \
+    200.0 /* about half a code: no converter is silent, and a silent one counts as stopped                   \
+           */
 #define CC_NOISE_UV_RMS 4.0
 #define ALERT_HELD (300 * PS_MS) /* longer than a result keeps ALERT high by itself */
 #define READ_TIME (10 * PS_MS)   /* the longest block read, and a little */
@@ -34,7 +35,7 @@ static int build(ps_rig *r)
     r->hal_x0.advance = ps_rig_advance_hook;
     r->hal_x0.advance_ctx = r;
     r->hal_x0.missing = 1u << (unsigned)BQ_LINE_AFE_POWER | 1u << (unsigned)BQ_LINE_CONTACTOR |
-                        1u << (unsigned)BQ_LINE_PRECHARGE;
+                        1u << (unsigned)BQ_LINE_PRECHARGE | 1u << (unsigned)BQ_LINE_REQUEST;
     r->alert_until = UINT64_MAX;
     return 0;
 }

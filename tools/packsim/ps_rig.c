@@ -153,20 +153,55 @@ static bq_status read_ammeter(void *ctx, int32_t *current_ma)
     return BQ_OK;
 }
 
-static bq_status boot(ps_rig *r)
+static void feed_watchdog(void *ctx)
 {
-    const ps_scenario *s = r->s;
+    ps_rig *r = ctx;
+    uint64_t gap = ps_rig_now(r) - r->fed_t;
+    r->fed_gap = gap > r->fed_gap ? gap : r->fed_gap;
+    r->fed_t += gap;
+}
+
+/* Carried out when the present pass has returned: ps_rig_sync(). */
+static void ask_reset(void *ctx)
+{
+    ((ps_rig *)ctx)->reset_asked = true;
+}
+
+static uint32_t stack_free(void *ctx)
+{
+    (void)ctx;
+    return 0; /* of a PC nobody knows */
+}
+
+static bq_board board_of(ps_rig *r)
+{
+    static const bq_mcu_ops mcu = {feed_watchdog, ask_reset, stack_free};
+    bq_board board = {0};
+    board.name = "packsim";
+    board.gpio = r->monitor->gpio(r);
+    board.clock = r->monitor->clock(r);
+    if (!r->monitor->measures_current) {
+        board.ammeter = (bq_ammeter){read_ammeter, r};
+    }
+    board.can = r->can;
+    board.console = r->console;
+    board.mcu = (bq_mcu){&mcu, r, &r->boot};
+    return board;
+}
+
+static bq_status boot(ps_rig *r, bq_reset_cause cause)
+{
     ps_firmware *f = &r->fw;
-    const bq_gpio gpio = r->monitor->gpio(r);
-    const bq_clock clock = r->monitor->clock(r);
-    const bq_ammeter ammeter = {read_ammeter, r};
+    const bq_board board = board_of(r);
     bq_status status = r->monitor->init(r);
     if (status != BQ_OK) {
         return status;
     }
-    return bq_app_init(&f->app, &s->app, &r->afe, &gpio, &clock,
-                       r->monitor->measures_current ? NULL : &ammeter, f->cells, SIM_CELLS_MAX, f->temps,
-                       SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
+    r->boot = (bq_boot){.cause = cause, .image_ok = true};
+    r->reset_asked = false;
+    r->fed_t = ps_rig_now(r);
+    return bq_firmware_init(&f->firmware, &board, &r->s->app, &r->afe, f->cells, SIM_CELLS_MAX, f->temps,
+                            SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
 }
 
 static uint64_t errors_of(const bq_link_stats *s)
@@ -192,24 +227,37 @@ static void keep_stats(ps_rig *r)
 static void ask(ps_rig *r, bool on)
 {
     r->request = on ? BQ_REQUEST_ON : BQ_REQUEST_OFF;
-    (void)bq_app_request(&r->fw.app, r->request);
+    (void)bq_firmware_request(&r->fw.firmware, r->request);
 }
 
 /* Memory as a reset leaves it, pins released, start from the reset vector. What the user asks for stays. */
-static void restart(ps_rig *r)
+static void restart(ps_rig *r, bq_reset_cause cause)
 {
     keep_stats(r);
     memset(&r->fw, POISON, sizeof r->fw);
     r->monitor->release(r);
-    (void)boot(r);
-    (void)bq_app_request(&r->fw.app, r->request);
+    (void)boot(r, cause);
+    (void)bq_firmware_request(&r->fw.firmware, r->request);
+}
+
+bool ps_rig_reset_asked(ps_rig *r)
+{
+    if (!r->reset_asked) {
+        return false;
+    }
+    restart(r, BQ_RESET_SOFTWARE);
+    return true;
 }
 
 /* ---- life ------------------------------------------------------------------------------------- */
 
 int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
 {
+    const bq_can can = r->can;
+    const bq_stream console = r->console;
     memset(r, 0, sizeof *r);
+    r->can = can;
+    r->console = console;
     r->s = s;
     r->monitor = s->part != NULL ? &ps_afe : &ps_stack;
     r->step = s->period < r->monitor->world_step ? s->period : r->monitor->world_step;
@@ -217,7 +265,7 @@ int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
         return ps_fail(e, s->pack_at, "the simulator refuses this pack");
     }
     show(r);
-    bq_status status = boot(r);
+    bq_status status = boot(r, BQ_RESET_POWER);
     if (status != BQ_OK) {
         return ps_fail(e, s->pack_at, "the firmware refuses this configuration (%s)", bq_status_name(status));
     }
@@ -254,7 +302,7 @@ void ps_rig_act(ps_rig *r, const ps_event *v)
         ask(r, v->on);
         return;
     case PS_ACT_MCU_RESET:
-        restart(r);
+        restart(r, BQ_RESET_PIN);
         return;
     default:
         break;

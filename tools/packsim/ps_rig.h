@@ -7,9 +7,9 @@
 #ifndef PS_RIG_H
 #define PS_RIG_H
 
-#include "bqhost/app.h"
 #include "bqhost/bq769x0.h"
 #include "bqhost/bq76pl536.h"
+#include "bqhost/firmware.h"
 #include "hal_sim.h"
 #include "hal_sim_x0.h"
 #include "ps_scenario.h"
@@ -28,7 +28,7 @@
 
 /** Everything a microcontroller loses in a reset. */
 typedef struct ps_firmware {
-    bq_app app;
+    bq_firmware firmware;
     union {
         bq76pl536 driver;
         bq769x0 afe;
@@ -99,10 +99,17 @@ typedef struct ps_rig {
     bq_pack_request request; /**< what the user wants, over firmware resets */
     ps_truth truth[PS_TRUTHS];
     unsigned truths;
+    bq_boot boot;       /**< what the present life of the firmware is told about its start */
+    bool reset_asked;   /**< by the firmware itself */
+    uint64_t fed_t;     /**< when the watchdog was fed last */
+    uint64_t fed_gap;   /**< longest time between two feedings */
+    bq_can can;         /**< ops NULL = none; set before ps_rig_init() */
+    bq_stream console;  /**< likewise */
     bq_link_stats lost; /**< of firmware lives that ended in a reset */
 } ps_rig;
 
-/** Builds everything, firmware initialised, simulated time 0. 0; or -1 with the error recorded. */
+/** Builds everything, firmware initialised, simulated time 0. r->can and r->console are kept, all else is
+ * new. 0; or -1 with the error recorded. */
 int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e);
 /** Records the host port's lines. 0, or -1 with errno set. */
 int ps_rig_record(ps_rig *r, const char *path);
@@ -123,6 +130,8 @@ double ps_rig_current_at(const ps_rig *r, uint64_t t);
 double ps_rig_asked_at(const ps_rig *r, uint64_t t);
 /** To be passed to the back-end: the world moves while the bus is busy. `ctx` is the ps_rig. */
 void ps_rig_advance_hook(void *ctx, uint64_t ns);
+/** Restarts a firmware that has asked for it in its last pass; true if it has. */
+bool ps_rig_reset_asked(ps_rig *r);
 /** Carries out an event. */
 void ps_rig_act(ps_rig *r, const ps_event *v);
 /** Cell voltages in force at a moment; NULL when too long ago. */

@@ -16,7 +16,7 @@ static uint64_t wall_ns(void)
 
 static void watch_faults(ps_run *u)
 {
-    const bq_pack *pack = bq_app_pack(&u->rig->fw.app);
+    const bq_pack *pack = bq_app_pack(&u->rig->fw.firmware.app);
     uint32_t fresh = pack->faults & ~u->fault_mask;
     u->fault_mask = pack->faults;
     for (int i = 0; fresh != 0u; i++, fresh >>= 1) {
@@ -52,7 +52,7 @@ static void watch_cells(ps_run *u, const bq_sample *s)
 
 static void watch_soc(ps_run *u)
 {
-    int16_t permille = bq_app_pack(&u->rig->fw.app)->summary.soc_permille;
+    int16_t permille = bq_app_pack(&u->rig->fw.firmware.app)->summary.soc_permille;
     if (permille >= 0) {
         double error = fabs((double)permille / 10.0 - sim_cells_mean_soc(&u->rig->world));
         u->totals.soc_percent = error > u->totals.soc_percent ? error : u->totals.soc_percent;
@@ -61,7 +61,7 @@ static void watch_soc(ps_run *u)
 
 static void watch_sample(ps_run *u)
 {
-    const bq_sample *s = bq_app_sample(&u->rig->fw.app);
+    const bq_sample *s = bq_app_sample(&u->rig->fw.firmware.app);
     if (s->cell_count == 0u || s->sequence == u->sequence) {
         return;
     }
@@ -81,7 +81,7 @@ static void watch_sample(ps_run *u)
 static void look(ps_run *u)
 {
     ps_rig *r = u->rig;
-    const bq_pack *pack = bq_app_pack(&r->fw.app);
+    const bq_pack *pack = bq_app_pack(&r->fw.firmware.app);
     int found = r->afe.ops->modules_found(r->afe.ctx);
     bool running = pack->state == BQ_PACK_STANDBY || pack->state == BQ_PACK_ON;
     ps_view view = {
@@ -95,6 +95,14 @@ static void look(ps_run *u)
     u->next_look = ps_judge_next(u->judge);
 }
 
+/* A new life of the firmware has begun. */
+static void forget(ps_run *u)
+{
+    u->seen_sample = false;
+    u->sequence = 0;
+    u->fault_mask = 0;
+}
+
 static void do_events(ps_run *u, uint64_t now)
 {
     const ps_scenario *s = u->rig->s;
@@ -102,9 +110,7 @@ static void do_events(ps_run *u, uint64_t now)
         const ps_event *v = &s->event[u->next_event++];
         ps_rig_act(u->rig, v);
         if (v->kind == PS_ACT_MCU_RESET) {
-            u->seen_sample = false;
-            u->sequence = 0;
-            u->fault_mask = 0;
+            forget(u);
         }
     }
 }
@@ -118,12 +124,12 @@ static void progress(ps_run *u, uint64_t now)
     }
     u->shown_wall_ns = wall;
     if (u->watch) {
-        ps_watch_draw(stderr, now, &u->rig->fw.app, u->found, u->drawn ? 0 : 1);
+        ps_watch_draw(stderr, now, &u->rig->fw.firmware.app, u->found, u->drawn ? 0 : 1);
         u->drawn = true;
         return;
     }
     (void)fprintf(stderr, "\r%.0f / %.0f s  %s   ", (double)now / 1e9, (double)u->rig->s->duration / 1e9,
-                  bq_pack_state_name(bq_app_pack(&u->rig->fw.app)->state));
+                  bq_pack_state_name(bq_app_pack(&u->rig->fw.firmware.app)->state));
 }
 
 static bool rows_wanted(const ps_run *u)
@@ -134,10 +140,10 @@ static bool rows_wanted(const ps_run *u)
 static void rows(ps_run *u)
 {
     if (u->csv != NULL) {
-        ps_csv_row(u->csv, u->next_row, &u->rig->fw.app, &u->rig->world);
+        ps_csv_row(u->csv, u->next_row, &u->rig->fw.firmware.app, &u->rig->world);
     }
     if (u->report != NULL) {
-        ps_report_take(u->report, u->next_row, &u->rig->fw.app);
+        ps_report_take(u->report, u->next_row, &u->rig->fw.firmware.app);
     }
     u->next_row += u->rig->s->period;
 }
@@ -147,14 +153,18 @@ static uint64_t turn(ps_run *u, uint64_t now)
 {
     ps_rig *r = u->rig;
     do_events(u, now);
-    uint64_t hint = (uint64_t)bq_app_step(&r->fw.app) * 1000u;
+    uint64_t hint = (uint64_t)bq_firmware_step(&r->fw.firmware) * 1000u;
     if (ps_rig_sync(r)) {
         ps_judge_outputs(u->judge, r->moved_t, ps_rig_outputs_on(r));
     }
-    if (bq_app_pack(&r->fw.app)->faults != u->fault_mask) {
+    if (bq_app_pack(&r->fw.firmware.app)->faults != u->fault_mask) {
         watch_faults(u);
     }
     watch_sample(u);
+    if (ps_rig_reset_asked(r)) {
+        forget(u);
+        hint = 0;
+    }
     if (u->next_look <= now) {
         look(u);
     }
@@ -222,7 +232,7 @@ void ps_run_all(ps_run *u)
     u->totals.speed = (double)u->simulated / 1e9 / (seconds > 1e-9 ? seconds : 1e-9);
     ps_judge_end(u->judge, &u->totals);
     if (u->watch) {
-        ps_watch_draw(stderr, u->simulated, &u->rig->fw.app, u->found, 0);
+        ps_watch_draw(stderr, u->simulated, &u->rig->fw.firmware.app, u->found, 0);
     } else if (u->progress) {
         (void)fputs("\r\033[K", stderr);
     }

@@ -21,7 +21,8 @@ static int build(ps_rig *r)
     hal_sim_init(&r->hal, &r->pl);
     r->hal.advance = ps_rig_advance_hook;
     r->hal.advance_ctx = r;
-    r->hal.missing = 1u << (unsigned)BQ_LINE_AFE_POWER; /* the supply is the scenario's affair */
+    /* supply and request are the scenario's affair */
+    r->hal.missing = 1u << (unsigned)BQ_LINE_AFE_POWER | 1u << (unsigned)BQ_LINE_REQUEST;
     return 0;
 }
 

@@ -85,7 +85,7 @@ bool ps_summary(FILE *to, const ps_run *u, bool quiet)
     (void)fprintf(to, "spread start mv: %.2f\nspread end mv: %.2f\n", u->spread_start_mv, u->spread_end_mv);
     print_or_none(to, "soc error percent", u->totals.soc_percent, 2);
     print_faults(to, u->judge);
-    (void)fprintf(to, "state: %s\n", bq_pack_state_name(bq_app_pack(&u->rig->fw.app)->state));
+    (void)fprintf(to, "state: %s\n", bq_pack_state_name(bq_app_pack(&u->rig->fw.firmware.app)->state));
     (void)fprintf(to, "misuse: %lu\nspeed: %.0f\n", u->totals.misuse, u->totals.speed);
     (void)fprintf(to, "expectations: %d/%d\n", held, s->expects);
     (void)fprintf(to, "result: %s\n", held == s->expects ? "pass" : "fail");

@@ -61,7 +61,7 @@ static void run_until(uint64_t t)
         if (b->next_event < s->events && s->event[b->next_event].t < t) {
             stop = s->event[b->next_event].t;
         }
-        uint64_t hint = (uint64_t)bq_app_step(&b->rig.fw.app) * 1000u;
+        uint64_t hint = (uint64_t)bq_firmware_step(&b->rig.fw.firmware) * 1000u;
         (void)ps_rig_sync(&b->rig);
         now = ps_rig_now(&b->rig);
         if (now < stop) {
@@ -82,7 +82,7 @@ static void ask_current(double a)
 
 static bq_pack_state_id state(void)
 {
-    return bq_app_pack(&b->rig.fw.app)->state;
+    return bq_app_pack(&b->rig.fw.firmware.app)->state;
 }
 
 void setUp(void)
@@ -154,7 +154,7 @@ static void test_every_part_with_every_count(void)
             build(text);
             run_until(6 * PS_S);
             TEST_ASSERT_EQUAL_MESSAGE(BQ_PACK_ON, state(), text);
-            const bq_sample *s = bq_app_sample(&b->rig.fw.app);
+            const bq_sample *s = bq_app_sample(&b->rig.fw.firmware.app);
             TEST_ASSERT_EQUAL(cells, s->cell_count);
             TEST_ASSERT_EQUAL(part->cells / 5, s->temp_count);
             for (int i = 0; i < cells; i++) {
@@ -204,12 +204,12 @@ static void test_the_pack_measures_its_current_with_the_part(void)
 {
     build(small);
     run_until(8 * PS_S);
-    const bq_sample *s = bq_app_sample(&b->rig.fw.app);
+    const bq_sample *s = bq_app_sample(&b->rig.fw.firmware.app);
     TEST_ASSERT_TRUE(s->current_valid);
     TEST_ASSERT_INT_WITHIN(15, -8000, s->current_ma); /* 4.2 mA a code, noise */
     ask_current(5.0);
     run_until(9 * PS_S);
-    TEST_ASSERT_INT_WITHIN(15, 5000, bq_app_sample(&b->rig.fw.app)->current_ma);
+    TEST_ASSERT_INT_WITHIN(15, 5000, bq_app_sample(&b->rig.fw.firmware.app)->current_ma);
 }
 
 /* A short circuit lasts as long as the comparator needs, not as long as a step of the world. */
@@ -251,7 +251,7 @@ static void test_thermistors_are_ohms(void)
     act((ps_event){.kind = PS_ACT_SENSOR, .n = 2, .value = 45.0});
     TEST_ASSERT_DOUBLE_WITHIN(2.0, 4846.0, b->rig.x0.ts_ohm[1]); /* 10 kOhm, B = 3435 K */
     run_until(9 * PS_S);
-    const bq_sample *s = bq_app_sample(&b->rig.fw.app);
+    const bq_sample *s = bq_app_sample(&b->rig.fw.firmware.app);
     TEST_ASSERT_INT_WITHIN(10, 450, s->temps[1].dc);
     TEST_ASSERT_INT_WITHIN(10, 250, s->temps[0].dc);
 }
@@ -315,7 +315,7 @@ static void test_noise_tells_a_working_converter_from_a_stopped_one(void)
     ask_current(0.0);
     for (uint64_t t = 6 * PS_S; t < 600 * PS_S; t += 250 * PS_MS) {
         run_until(t);
-        TEST_ASSERT_EQUAL(0, bq_app_sample(&b->rig.fw.app)->modules[0].faults & BQ_F_LOCKUP);
+        TEST_ASSERT_EQUAL(0, bq_app_sample(&b->rig.fw.firmware.app)->modules[0].faults & BQ_F_LOCKUP);
     }
 }
 

@@ -52,7 +52,7 @@ static void run_until(uint64_t t)
 {
     while (ps_rig_now(&b->rig) < t) {
         uint64_t left = t - ps_rig_now(&b->rig);
-        uint64_t hint = (uint64_t)bq_app_step(&b->rig.fw.app) * 1000u;
+        uint64_t hint = (uint64_t)bq_firmware_step(&b->rig.fw.firmware) * 1000u;
         (void)ps_rig_sync(&b->rig);
         ps_rig_advance(&b->rig, hint < left ? hint : left);
     }
@@ -101,7 +101,7 @@ static void test_reset_releases_the_pins_and_forgets_everything(void)
     TEST_ASSERT_TRUE(ps_rig_outputs_on(&b->rig));
     act((ps_event){.kind = PS_ACT_MCU_RESET});
     TEST_ASSERT_FALSE(ps_rig_outputs_on(&b->rig));
-    TEST_ASSERT_EQUAL(BQ_PACK_INIT, bq_app_pack(&b->rig.fw.app)->state);
+    TEST_ASSERT_EQUAL(BQ_PACK_INIT, bq_app_pack(&b->rig.fw.firmware.app)->state);
     TEST_ASSERT_EQUAL(0, b->rig.afe.ops->modules_found(b->rig.afe.ctx));
     run_until(20 * PS_S); /* the request stays */
     TEST_ASSERT_TRUE(ps_rig_outputs_on(&b->rig));

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Which command a line is, and the commands of a row or two. */
+#include "console_internal.h"
+#include <string.h>
+
+/* In the order of `names`. */
+enum {
+    NOTHING,
+    HELP,
+    VERSION,
+    STATUS,
+    CELLS,
+    FAULTS,
+    COUNTERS,
+    SELF_TEST,
+    BALANCE,
+    BALANCE_ON,
+    BALANCE_OFF,
+    RESET,
+    UNKNOWN
+};
+
+static const char names[] =
+    "|help|version|status|cells|faults|counters|self-test|balance|balance on|balance off|reset";
+
+/* ---- taking the line apart ------------------------------------------------------------------------ */
+
+/* One blank between words, none around them. */
+static uint8_t tidy(char *line)
+{
+    uint8_t len = 0;
+
+    for (const char *from = line; *from != '\0'; from++) {
+        if (*from != ' ' || (len > 0u && line[len - 1u] != ' ')) {
+            line[len++] = *from;
+        }
+    }
+    return len > 0u && line[len - 1u] == ' ' ? (uint8_t)(len - 1u) : len;
+}
+
+uint8_t console_parse(bq_console *c)
+{
+    const uint8_t len = tidy(c->line);
+    uint8_t n = NOTHING, word_len = 0;
+
+    while (n < (uint8_t)UNKNOWN) {
+        const char *word = console_word(names, n, &word_len);
+        if (word == NULL || (word_len == len && memcmp(word, c->line, len) == 0)) {
+            break;
+        }
+        n++;
+    }
+    return n;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------------- */
+
+/* The only row of a command. */
+static console_row only(bq_console *c, const char *what)
+{
+    if (c->row++ > 0u) {
+        return CONSOLE_DONE;
+    }
+    console_text(c, what);
+    return CONSOLE_ROW;
+}
+
+static console_row help(bq_console *c)
+{
+    static const char text[] = "%[help       this list|"
+                               "version    version, last reset, crash|"
+                               "status     state, reason, measurements|"
+                               "cells      every cell and sensor|"
+                               "faults     every fault since the start|"
+                               "counters   of loop and link|"
+                               "self-test  of the monitors, while outputs are off|"
+                               "balance    [on or off] allow or forbid it; which cells bleed|"
+                               "reset      outputs off, then restart]";
+    const int32_t row = c->row++;
+
+    if (row >= 9) {
+        return CONSOLE_DONE;
+    }
+    console_say(c, text, &row);
+    return CONSOLE_ROW;
+}
+
+static console_row self_test(bq_console *c, bq_app *app)
+{
+    const bq_pack_input *in = bq_app_input(app);
+
+    if (c->row == 0u) {
+        if (bq_app_self_test(app) != BQ_OK) {
+            return only(c, "not now: an output is on, or the monitor is not up");
+        }
+        c->item = 1;
+        return only(c, "running");
+    }
+    if (c->item == 0u) {
+        return CONSOLE_DONE;
+    }
+    if (in->self_test == BQ_TEST_NONE && in->monitor == BQ_MONITOR_UP) {
+        return CONSOLE_LATER;
+    }
+    {
+        const int32_t v[] = {(int32_t)in->self_test, (int32_t)in->self_test_status};
+        c->item = 0;
+        console_say(c, "%[the monitor was lost|passed|failed], %E", v);
+    }
+    return CONSOLE_ROW;
+}
+
+static console_row balance(bq_console *c, bq_app *app)
+{
+    if (c->row++ > 0u) {
+        return console_bleeding(c, app);
+    }
+    if (c->command != (uint8_t)BALANCE) {
+        (void)bq_app_balance(app, c->command == (uint8_t)BALANCE_ON);
+    }
+    {
+        const int32_t v[] = {bq_app_input(app)->balance_off, bq_app_pack(app)->summary.balancing};
+        console_say(c, "%[allowed|forbidden], cells that bleed: %u", v);
+    }
+    return CONSOLE_ROW;
+}
+
+static console_row reset(bq_console *c, bq_console_target *t)
+{
+    if (t->mcu == NULL || t->mcu->ops == NULL) {
+        return only(c, "not on this board");
+    }
+    t->reset = true;
+    return only(c, "outputs off, then reset");
+}
+
+static console_row of_app(bq_console *c, bq_app *app)
+{
+    switch (c->command) {
+    case CELLS:
+        return console_cells(c, app);
+    case FAULTS:
+        return console_faults(c, app);
+    case COUNTERS:
+        return console_counters(c, app);
+    case SELF_TEST:
+        return self_test(c, app);
+    default:
+        return balance(c, app);
+    }
+}
+
+console_row console_run(bq_console *c, bq_console_target *t)
+{
+    switch (c->command) {
+    case HELP:
+        return help(c);
+    case VERSION:
+        return console_version(c, t);
+    case STATUS:
+        return console_status(c, t);
+    case RESET:
+        return reset(c, t);
+    case UNKNOWN:
+        return only(c, "unknown, try help");
+    case CONSOLE_GREETING:
+        return c->row == 0u ? console_version(c, t) : CONSOLE_DONE;
+    default:
+        return t->app != NULL ? of_app(c, t->app) : only(c, "nothing runs, see status");
+    }
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the files of the console share; see include/bqhost/console.h. */
+#ifndef CONSOLE_INTERNAL_H
+#define CONSOLE_INTERNAL_H
+
+#include "bqhost/console.h"
+
+/* ---- console_text.c: the row under construction ------------------------------------------------ */
+
+void console_char(bq_console *c, char what);
+void console_text(bq_console *c, const char *what);
+/*
+ * Text with values, taken from `v` in turn:
+ *   %u number        %x 4 hexadecimal digits   %X 8                %v millivolts: 3.700 V
+ *   %i milliamperes  %c 25.1 C                 %p permille: 53.2 % %t milliseconds: 12.3 s
+ *   %a , 12 ms old (-1: , never measured)      %E bq_status        %S bq_pack_state_id
+ *   %F bq_pack_fault %H bq_pack_hold
+ *   %[off|on]   the value chooses one of the words
+ *   %(, cell )  the text and the number, nothing when it is 0
+ *   %?          0: "not valid", and the rest is left out
+ */
+void console_say(bq_console *c, const char *format, const int32_t *v);
+void console_end(bq_console *c); /* CR LF; the row is complete */
+/* The words of a list "a|b|c": where number n begins, NULL past the end; `len` gets its length. */
+const char *console_word(const char *list, uint32_t n, uint8_t *len);
+
+/* ---- console_edit.c: the line --------------------------------------------------------------------- */
+
+/* One byte of input. True: the line is complete. */
+bool console_edit(bq_console *c, uint8_t byte);
+void console_prompt(bq_console *c);
+/* Remembers the line. */
+void console_remember(bq_console *c);
+
+/* ---- commands ------------------------------------------------------------------------------------- */
+
+typedef enum console_row {
+    CONSOLE_ROW,   /* a row was made, there may be more */
+    CONSOLE_LATER, /* nothing yet, ask again later */
+    CONSOLE_DONE   /* no more rows; none was made */
+} console_row;
+
+#define CONSOLE_GREETING 0xffu
+/* Which command the line is; 0 = none. */
+uint8_t console_parse(bq_console *c);
+/* The next row of the running command. */
+console_row console_run(bq_console *c, bq_console_target *t);
+
+console_row console_status(bq_console *c, const bq_console_target *t);
+console_row console_version(bq_console *c, const bq_console_target *t);
+console_row console_cells(bq_console *c, const bq_app *app);
+console_row console_faults(bq_console *c, const bq_app *app);
+console_row console_counters(bq_console *c, const bq_app *app);
+console_row console_bleeding(bq_console *c, const bq_app *app);
+
+/* Saturating: an age measured `since_ms` ago. */
+int32_t console_age(uint32_t age_ms, uint32_t since_ms);
+
+#endif
