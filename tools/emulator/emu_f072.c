@@ -8,6 +8,7 @@
 #define APB1 0x1c, 0x10
 #define NO_IRQ {EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ}
 #define IRQ(n) {n, EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ}
+#define IRQS(a, b, c, d) {a, b, c, d}
 
 /* A clock gate as the table wants it: GATE(APB1, bit). */
 #define GATE_(enable, reset, bit) .enable_reg = (enable), .reset_reg = (reset), .enable_bit = (bit)
@@ -36,6 +37,15 @@ static const emu_pad usart2_pads[] = {{EMU_SIG_TX, 0, 2, 1},
                                       {EMU_SIG_TX, 0, 14, 1},
                                       {EMU_SIG_RX, 0, 15, 1},
                                       {EMU_SIG_END, 0, 0, 0}};
+
+static const emu_pad i2c1_pads[] = {{EMU_SIG_SCL, 1, 6, 1},
+                                    {EMU_SIG_SDA, 1, 7, 1},
+                                    {EMU_SIG_SCL, 1, 8, 1},
+                                    {EMU_SIG_SDA, 1, 9, 1},
+                                    {EMU_SIG_END, 0, 0, 0}};
+static const emu_pad can_pads[] = {{EMU_SIG_RX, 0, 11, 4}, {EMU_SIG_TX, 0, 12, 4}, {EMU_SIG_RX, 1, 8, 4},
+                                   {EMU_SIG_TX, 1, 9, 4},  {EMU_SIG_RX, 3, 0, 0},  {EMU_SIG_TX, 3, 1, 0},
+                                   {EMU_SIG_END, 0, 0, 0}};
 
 static const emu_instance instances[] = {
     {.name = "RCC",
@@ -125,6 +135,27 @@ static const emu_instance instances[] = {
      GATE(APB1, 17),
      .irq = IRQ(28),
      .pads = usart2_pads},
+    {.name = "I2C1",
+     .create = emu_i2c_v2_new,
+     .base = 0x40005400u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F0,
+     .bus = EMU_APB1,
+     .kernel = EMU_KERNEL_I2C1,
+     GATE(APB1, 21),
+     .irq = IRQ(23),
+     .pads = i2c1_pads},
+    {.name = "CAN",
+     .create = emu_can_new,
+     .base = 0x40006400u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F0,
+     .bus = EMU_APB1,
+     GATE(APB1, 25),
+     .irq = IRQ(30),
+     .pads = can_pads},
     {.name = "DBGMCU",
      .create = emu_debug_new,
      .base = 0x40015800u,

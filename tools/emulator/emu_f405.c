@@ -8,6 +8,7 @@
 #define APB1 0x40, 0x20
 #define NO_IRQ {EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ}
 #define IRQ(n) {n, EMU_NO_IRQ, EMU_NO_IRQ, EMU_NO_IRQ}
+#define IRQS(a, b, c, d) {a, b, c, d}
 
 /* A clock gate as the table wants it: GATE(APB1, bit). */
 #define GATE_(enable, reset, bit) .enable_reg = (enable), .reset_reg = (reset), .enable_bit = (bit)
@@ -32,6 +33,24 @@ static const emu_pad usart1_pads[] = {{EMU_SIG_TX, 0, 9, 7},
                                       {EMU_SIG_RX, 1, 7, 7},
                                       {EMU_SIG_END, 0, 0, 0}};
 static const emu_pad usart2_pads[] = {{EMU_SIG_TX, 0, 2, 7}, {EMU_SIG_RX, 0, 3, 7}, {EMU_SIG_END, 0, 0, 0}};
+
+static const emu_pad i2c1_pads[] = {{EMU_SIG_SCL, 1, 6, 4},
+                                    {EMU_SIG_SDA, 1, 7, 4},
+                                    {EMU_SIG_SCL, 1, 8, 4},
+                                    {EMU_SIG_SDA, 1, 9, 4},
+                                    {EMU_SIG_END, 0, 0, 0}};
+static const emu_pad spi1_pads[] = {{EMU_SIG_SCK, 0, 5, 5}, {EMU_SIG_MISO, 0, 6, 5}, {EMU_SIG_MOSI, 0, 7, 5},
+                                    {EMU_SIG_SCK, 1, 3, 5}, {EMU_SIG_MISO, 1, 4, 5}, {EMU_SIG_MOSI, 1, 5, 5},
+                                    {EMU_SIG_END, 0, 0, 0}};
+static const emu_pad can1_pads[] = {{EMU_SIG_RX, 0, 11, 9}, {EMU_SIG_TX, 0, 12, 9}, {EMU_SIG_RX, 1, 8, 9},
+                                    {EMU_SIG_TX, 1, 9, 9},  {EMU_SIG_RX, 3, 0, 9},  {EMU_SIG_TX, 3, 1, 9},
+                                    {EMU_SIG_END, 0, 0, 0}};
+#define ANALOG(channel, port, pin) {EMU_SIG_CHANNEL0 + (channel), port, pin, EMU_AF_ANALOG}
+static const emu_pad adc1_pads[] = {
+    ANALOG(0, 0, 0),  ANALOG(1, 0, 1),       ANALOG(2, 0, 2),  ANALOG(3, 0, 3),  ANALOG(4, 0, 4),
+    ANALOG(5, 0, 5),  ANALOG(6, 0, 6),       ANALOG(7, 0, 7),  ANALOG(8, 1, 0),  ANALOG(9, 1, 1),
+    ANALOG(10, 2, 0), ANALOG(11, 2, 1),      ANALOG(12, 2, 2), ANALOG(13, 2, 3), ANALOG(14, 2, 4),
+    ANALOG(15, 2, 5), {EMU_SIG_END, 0, 0, 0}};
 
 static const emu_instance instances[] = {
     {.name = "RCC",
@@ -132,6 +151,64 @@ static const emu_instance instances[] = {
      GATE(APB1, 17),
      .irq = IRQ(38),
      .pads = usart2_pads},
+    {.name = "I2C1",
+     .create = emu_i2c_v1_new,
+     .base = 0x40005400u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F4,
+     .bus = EMU_APB1,
+     GATE(APB1, 21),
+     .irq = IRQS(31, 32, EMU_NO_IRQ, EMU_NO_IRQ),
+     .pads = i2c1_pads},
+    {.name = "SPI1",
+     .create = emu_spi_v1_new,
+     .base = 0x40013000u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F4,
+     .bus = EMU_APB2,
+     GATE(APB2, 12),
+     .irq = IRQ(35),
+     .pads = spi1_pads},
+    {.name = "DMA1",
+     .create = emu_dma_v2_new,
+     .base = 0x40026000u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F4,
+     .bus = EMU_AHB,
+     GATE(AHB, 21),
+     .irq = IRQS(11, 12, 13, 14)},
+    {.name = "DMA2",
+     .create = emu_dma_v2_new,
+     .base = 0x40026400u,
+     .size = 0x400,
+     .number = 2,
+     .family = EMU_F4,
+     .bus = EMU_AHB,
+     GATE(AHB, 22),
+     .irq = IRQS(56, 57, 58, 59)},
+    {.name = "CAN1",
+     .create = emu_can_new,
+     .base = 0x40006400u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F4,
+     .bus = EMU_APB1,
+     GATE(APB1, 25),
+     .irq = IRQS(19, 20, 21, 22),
+     .pads = can1_pads},
+    {.name = "ADC1",
+     .create = emu_adc_f4_new,
+     .base = 0x40012000u,
+     .size = 0x400,
+     .number = 1,
+     .family = EMU_F4,
+     .bus = EMU_APB2,
+     GATE(APB2, 8),
+     .irq = IRQ(18),
+     .pads = adc1_pads},
     {.name = "DBGMCU",
      .create = emu_debug_new,
      .base = 0xe0042000u,

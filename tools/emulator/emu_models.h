@@ -20,5 +20,11 @@ emu_periph *emu_tim2_new(emu *e, const emu_instance *at);     /**< global */
 emu_periph *emu_iwdg_new(emu *e, const emu_instance *at);     /**< none */
 emu_periph *emu_usart_v1_new(emu *e, const emu_instance *at); /**< global (F4) */
 emu_periph *emu_usart_v2_new(emu *e, const emu_instance *at); /**< global (F0) */
+emu_periph *emu_i2c_v1_new(emu *e, const emu_instance *at);   /**< event, error (F4) */
+emu_periph *emu_i2c_v2_new(emu *e, const emu_instance *at);   /**< global (F0) */
+emu_periph *emu_spi_v1_new(emu *e, const emu_instance *at);   /**< global */
+emu_periph *emu_dma_v2_new(emu *e, const emu_instance *at);   /**< streams 0 to 3; the others have none */
+emu_periph *emu_can_new(emu *e, const emu_instance *at);    /**< transmit, FIFO 0, FIFO 1, change; F0: all */
+emu_periph *emu_adc_f4_new(emu *e, const emu_instance *at); /**< global */
 
 #endif
