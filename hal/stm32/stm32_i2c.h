@@ -20,6 +20,7 @@ typedef struct stm32_i2c {
     uint8_t count, index; /* segments, the present one */
     uint16_t done;        /* bytes of the present segment that have moved */
     uint32_t from_us, limit_us;
+    volatile uint8_t step;     /* of the family's state machine, where it needs one */
     volatile bool busy;        /* a transaction runs */
     bool owed;                 /* its outcome has not been told yet */
     volatile bq_status result; /* of the transaction; BQ_OK until something failed */
