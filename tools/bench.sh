@@ -54,7 +54,7 @@ instruction_rows() {
 
 linked() { # linked CPU [FLAG]: text, constants and RAM of an image
     arm-none-eabi-gcc -Os -mcpu="$1" -mthumb -std=c99 -ffunction-sections -fdata-sections -Iinclude "${@:2}" \
-        tools/bench/image.c $(find src drivers -name '*.c') -nostartfiles --specs=nano.specs --specs=nosys.specs \
+        tools/bench/image.c $(find src drivers -name '*.c' ! -path 'drivers/template/*') -nostartfiles --specs=nano.specs --specs=nosys.specs \
         -Wl,--gc-sections -Wl,-e,main -o "$root/build/bench-table16/image.elf"
     arm-none-eabi-size "$root/build/bench-table16/image.elf" | awk 'NR == 2 { print $1 + $2 " | " $2 + $3 }'
 }

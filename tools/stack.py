@@ -4,7 +4,7 @@
 
     tools/stack.py [--cc CC] [--flags=FLAGS] [--targets FILE] [--top N] [--limit BYTES] [SOURCE...]
 
-Without sources, all of src/ and drivers/ is compiled with -Os. Exit status 1, with a line PROBLEM for each, on
+Without sources, all of src/ and drivers/bq*/ is compiled with -Os. Exit status 1, with a line PROBLEM for each, on
     recursion (direct, or through a table of functions),
     a frame whose size is not known when compiling (alloca, variable arrays),
     a call through a pointer that the target file does not declare,
@@ -111,7 +111,7 @@ class Graph:
 
 
 def compile_graph(options, graph):
-    sources = options.sources or sorted(ROOT.glob("src/**/*.c")) + sorted(ROOT.glob("drivers/**/*.c"))
+    sources = options.sources or sorted(ROOT.glob("src/**/*.c")) + sorted(ROOT.glob("drivers/bq*/*.c"))
     with tempfile.TemporaryDirectory() as scratch:
         for number, source in enumerate(sources):
             target = pathlib.Path(scratch) / f"{number}.o"

@@ -67,7 +67,7 @@ static bq_status i2c_poll(void *ctx)
 static bq_status i2c_recover(void *ctx)
 {
     (void)ctx;
-    /* FILL IN: up to nine clocks while SDA is low, then STOP. At most 500 us. */
+    /* FILL IN: up to nine clocks while SDA is low, then STOP. At most 200 us. */
     return BQ_E_ARBITRATION;
 }
 

@@ -62,7 +62,7 @@ plain)
     for std in c99 c11 c17; do
         # shellcheck disable=SC2046
         "$CC" "-std=$std" -pedantic-errors -O1 -DBQHOST_CRC8=table16 -I "$root/include" "$here/consumer.c" \
-            $(find "$root/src" "$root/drivers" -name '*.c') -o "$scratch/plain-$std"
+            $(find "$root/src" "$root"/drivers/bq* -name '*.c') -o "$scratch/plain-$std"
         says "$scratch/plain-$std"
     done
     ;;
