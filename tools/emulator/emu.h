@@ -111,9 +111,8 @@ typedef struct emu_meter {
     uint64_t longest_awake_ns; /**< when that one began */
     uint64_t longest_latency;  /**< cycles from an interrupt pending and enabled to its first instruction */
     unsigned longest_latency_irq;
-    uint64_t longest_isr;   /**< cycles from the first exception entered to the return to thread mode */
+    uint64_t longest_isr;   /**< cycles from the first instruction of a handler to the return to thread mode */
     uint32_t lowest_sp;     /**< of the main stack, since the last reset or emu_meter_clear() */
-    uint32_t longest_block; /**< instructions in the longest run without a branch: the grain of time */
     uint32_t exceptions;    /**< entered */
     uint32_t resets[EMU_CAUSES];
     uint32_t faults; /**< HardFaults entered */

@@ -16,7 +16,6 @@ void emu_meter_clear(emu *e)
     m->longest_latency = 0;
     m->longest_latency_irq = 0;
     m->longest_isr = 0;
-    m->longest_block = 0;
     m->lowest_sp = UINT32_MAX;
     e->awake_since = e->cycle;
     e->awake_since_ns = emu_now(e);
