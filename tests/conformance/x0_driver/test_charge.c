@@ -66,6 +66,30 @@ static void test_sign(void)
     }
 }
 
+/* A pulse shorter than a window is its mean, wherever the window lies against the scan of the cells. */
+/* proves: X0-CC-02, X0-AMB-27, X0-SCH-11 */
+static void test_a_result_is_the_mean_of_its_window(void)
+{
+    int phase;
+    for (phase = 0; phase < 250; phase += 23) {
+        bench_up("bq7693000");
+        bench_wait(phase);
+        TEST_ASSERT_EQUAL(BQ_OK, bench_start()); /* the counter begins anew, at another phase */
+        bench_serve(500, 250);
+        sim_x0_advance(&b.chip, b.chip.t_cc_end - b.chip.now);
+        TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
+        sim_x0_advance(&b.chip, b.chip.t_cc_end - b.chip.now);
+        (void)sim_x0_set_sense(&b.chip, 0.010);
+        bench_wait(100);
+        (void)sim_x0_set_sense(&b.chip, -0.002);
+        bench_wait(150);
+        TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
+        TEST_ASSERT_INT_WITHIN(2, 560, b.sample.current_ma); /* (100 x 2 A - 150 x 0.4 A) / 250 */
+        TEST_ASSERT_INT_WITHIN(1, 3600, b.cells[0].mv);
+        NO_MISUSE();
+    }
+}
+
 /* proves: X0-CC-11, X0-AMB-23 */
 static void test_saturation_is_no_current(void)
 {
@@ -228,6 +252,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_missed_windows_are_counted_and_filled_with_the_mean_of_their_neighbours);
     RUN_TEST(test_sign);
+    RUN_TEST(test_a_result_is_the_mean_of_its_window);
     RUN_TEST(test_saturation_is_no_current);
     RUN_TEST(test_a_counter_that_stands_is_a_fault_with_the_fets_off);
     RUN_TEST(test_a_converter_that_stands_is_found_and_a_quiet_pack_is_not_taken_for_one);

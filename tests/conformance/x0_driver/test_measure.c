@@ -16,7 +16,7 @@ static bool covers(const bench_entry *e, unsigned reg)
     return e->read > 0 && e->reg <= reg && reg < (unsigned)e->reg + e->read;
 }
 
-/* proves: X0-SEQ-21, X0-SEQ-22, X0-I2C-21, X0-AMB-19, X0-I2C-08, X0-I2C-10, X0-AMB-82, X0-AMB-83 */
+/* proves: X0-SEQ-21, X0-SEQ-22, X0-I2C-21, X0-AMB-19, X0-I2C-08, X0-I2C-10, X0-AMB-82, X0-AMB-83, X0-CC-04 */
 static void test_order_of_a_cycle(void)
 {
     int k, i;

@@ -176,7 +176,8 @@ static void test_each_balancing_bit(void)
     }
 }
 
-/* proves: X0-REG-04, X0-REG-05, X0-FET-01, X0-AMB-14, X0-AMB-56, X0-BIT-03, X0-BIT-04, X0-DLY-01 */
+/* proves: X0-REG-04, X0-REG-05, X0-REG-0B, X0-FET-01, X0-AMB-14, X0-AMB-56, X0-BIT-03, X0-BIT-04, X0-DLY-01
+ */
 static void test_control_registers(void)
 {
     unsigned k, fets, die;
@@ -197,6 +198,7 @@ static void test_control_registers(void)
                 TEST_ASSERT_EQUAL((fets & 2) != 0, sim_x0_dsg(&b.chip));
             }
             TEST_ASSERT_EQUAL_HEX8(die ? 0x10 : 0x18, sim_x0_peek(&b.chip, 0x04));
+            TEST_ASSERT_EQUAL_HEX8(0x19, sim_x0_peek(&b.chip, 0x0b));
             TEST_ASSERT_EQUAL(BQ_OK, bench_apply(false, false, 0));
             (void)sim_x0_set_chgpin(&b.chip, 3.0); /* LOAD_PRESENT reads 1 and is no configuration */
             n = b.count;
