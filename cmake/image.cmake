@@ -17,7 +17,7 @@ function(bqhost_image board family)
     target_sources(${board} PRIVATE ${common}/stm32_header.c)
     target_compile_definitions(${board} PRIVATE BQHOST_BOARD="${board}" BQHOST_IMAGE_VERSION=${version}u)
     target_link_libraries(${board} PRIVATE bqhost bqhost_hal_${family} bqhost_flags ${BQHOST_IMAGE_LIBS})
-    target_link_options(${board} PRIVATE ${BQHOST_IMAGE_LINK} -nostartfiles -Wl,--gc-sections -Wl,-Map=${out}.map
+    target_link_options(${board} PRIVATE ${BQHOST_IMAGE_LINK} -Wl,--gc-sections -Wl,-Map=${out}.map
         -L${common} -T${CMAKE_CURRENT_SOURCE_DIR}/link.ld)
 
     add_custom_command(TARGET ${board} POST_BUILD

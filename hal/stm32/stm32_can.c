@@ -62,9 +62,17 @@ static void unpack(const stm32_can_mailbox *m, bq_can_frame *f)
     }
 }
 
+/* The release of a frame is over when RFOM reads 0 again, some cycles later. */
+static void release(stm32_can_regs *c)
+{
+    c->rf0r = STM32_CAN_RF0R_RFOM;
+    for (unsigned n = 0; n < 100u && (c->rf0r & STM32_CAN_RF0R_RFOM) != 0u; n++) {
+    }
+}
+
 static void receive_all(stm32_can *can, stm32_can_regs *c)
 {
-    /* three frames at most are in the FIFO; the release of one is over when RFOM reads 0 again */
+    /* three frames at most are in the FIFO */
     for (unsigned n = 0; n < 3u && (c->rf0r & STM32_CAN_RF0R_FMP) != 0u; n++) {
         if ((uint8_t)(can->put - can->get) < STM32_CAN_RX) {
             unpack(&c->rx[0], &can->rx[can->put % STM32_CAN_RX]);
@@ -72,9 +80,7 @@ static void receive_all(stm32_can *can, stm32_can_regs *c)
         } else {
             can->dropped++;
         }
-        c->rf0r = STM32_CAN_RF0R_RFOM;
-        while ((c->rf0r & STM32_CAN_RF0R_RFOM) != 0u) {
-        }
+        release(c);
         stm32_time_event(can->time);
     }
     if ((c->rf0r & STM32_CAN_RF0R_FOVR) != 0u) {

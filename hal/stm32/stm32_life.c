@@ -14,26 +14,6 @@
 /* ---- begin
  * --------------------------------------------------------------------------------------------------- */
 
-bq_reset_cause stm32_reset_cause(uint32_t flags, uint32_t brown_out, bool kept, bool crashed)
-{
-    if (crashed && (flags & STM32_CSR_PORRSTF) == 0u) {
-        return BQ_RESET_CRASH;
-    }
-    if ((flags & (STM32_CSR_IWDGRSTF | STM32_CSR_WWDGRSTF)) != 0u) {
-        return BQ_RESET_WATCHDOG;
-    }
-    if ((flags & STM32_CSR_SFTRSTF) != 0u) {
-        return BQ_RESET_SOFTWARE;
-    }
-    if ((flags & STM32_CSR_PORRSTF) != 0u) {
-        return kept ? BQ_RESET_BROWN_OUT : BQ_RESET_POWER;
-    }
-    if ((flags & brown_out) != 0u) {
-        return BQ_RESET_BROWN_OUT;
-    }
-    return (flags & STM32_CSR_PINRSTF) != 0u ? BQ_RESET_PIN : BQ_RESET_UNKNOWN;
-}
-
 static bool crash_is_valid(const stm32_record *r)
 {
     return r->magic == CRASHED && r->check == stm32_crc32(0, &r->crash, sizeof r->crash);
@@ -130,7 +110,7 @@ static void keep(uint32_t kind, const uint32_t *frame, uint32_t lr, uint32_t sp)
     r->magic = CRASHED;
 }
 
-void stm32_fault_kept(const uint32_t *frame, uint32_t exception)
+__attribute__((used)) void stm32_fault_kept(const uint32_t *frame, uint32_t exception)
 {
     bool inside = frame >= stm32_guard_begin && frame + 8 <= stm32_stack_end;
     board_outputs_safe();

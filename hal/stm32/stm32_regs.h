@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#define STM32_REG(address) (*(volatile uint32_t *)(address))
+#define STM32_REG(address) (*(volatile uint32_t *)(uintptr_t)(address))
 
 /* ---- core: NVIC and system control (PM0215 4.2, 4.3; PM0214 4.3, 4.4) -----------------------------------
  */
@@ -53,7 +53,7 @@ typedef struct stm32_tim_regs {
     volatile uint32_t cr1, cr2, smcr, dier, sr, egr, ccmr1, ccmr2, ccer, cnt, psc, arr, rcr, ccr1;
 } stm32_tim_regs;
 
-#define STM32_TIM2 ((stm32_tim_regs *)0x40000000u)
+#define STM32_TIM2 ((stm32_tim_regs *)(uintptr_t)0x40000000u)
 #define STM32_TIM_CR1_CEN (1u << 0)
 #define STM32_TIM_DIER_CC1IE (1u << 1)
 #define STM32_TIM_SR_UIF (1u << 0)
@@ -67,7 +67,7 @@ typedef struct stm32_iwdg_regs {
     volatile uint32_t kr, pr, rlr, sr;
 } stm32_iwdg_regs;
 
-#define STM32_IWDG ((stm32_iwdg_regs *)0x40003000u)
+#define STM32_IWDG ((stm32_iwdg_regs *)(uintptr_t)0x40003000u)
 #define STM32_IWDG_KR_START 0xCCCCu
 #define STM32_IWDG_KR_UNLOCK 0x5555u
 #define STM32_IWDG_KR_RELOAD 0xAAAAu
@@ -128,7 +128,7 @@ typedef struct stm32_can_regs {
     } filter[14]; /* 0x240 */
 } stm32_can_regs;
 
-#define STM32_CAN1 ((stm32_can_regs *)0x40006400u)
+#define STM32_CAN1 ((stm32_can_regs *)(uintptr_t)0x40006400u)
 #define STM32_CAN_MCR_INRQ (1u << 0)
 #define STM32_CAN_MCR_SLEEP (1u << 1)
 #define STM32_CAN_MCR_TXFP (1u << 2)

@@ -11,6 +11,9 @@
 #define STM32_PAINT_WORD 0xA5A5A5A5u
 #define STM32_GUARD_WORD 0x6B726147u
 
+#define STM32_RECORD_BYTES 80 /* room that sections.ld leaves for the record */
+typedef char stm32_record_fits[sizeof(stm32_record) <= STM32_RECORD_BYTES ? 1 : -1];
+
 extern stm32_record stm32_life_record;
 extern uint32_t stm32_guard_begin[], stm32_guard_end[]; /* the stack begins where the guard ends */
 extern uint32_t stm32_stack_end[];

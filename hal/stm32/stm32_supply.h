@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-/** Switches the detector on at the highest level (F0: 2.8 V falling, F4: 2.8 V falling). */
+/** Switches the detector on at the highest level (about 2.8 V on a falling supply, F4: 2.9 V). */
 void stm32_supply_init(void);
 /** False while the supply is below the level. */
 bool stm32_supply_ok(void);

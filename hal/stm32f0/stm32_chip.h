@@ -23,7 +23,7 @@
  * ----------------------------------------------------------------------- */
 
 #define STM32_GPIO_BASE 0x48000000u
-#define STM32_EXTI ((stm32_exti_regs *)0x40010400u)
+#define STM32_EXTI ((stm32_exti_regs *)(uintptr_t)0x40010400u)
 #define STM32_SYSCFG_EXTICR(n) STM32_REG(0x40010008u + 4u * (n))
 
 /* RCC (RM0091 6.4) */

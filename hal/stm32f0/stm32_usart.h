@@ -13,7 +13,7 @@ typedef struct stm32_usart_regs {
     volatile uint32_t cr1, cr2, cr3, brr, gtpr, rtor, rqr, isr, icr, rdr, tdr;
 } stm32_usart_regs;
 
-#define STM32_USART2 ((stm32_usart_regs *)0x40004400u)
+#define STM32_USART2 ((stm32_usart_regs *)(uintptr_t)0x40004400u)
 #define STM32_USART_CR1_UE (1u << 0)
 #define STM32_USART_CR1_RE (1u << 2)
 #define STM32_USART_CR1_TE (1u << 3)

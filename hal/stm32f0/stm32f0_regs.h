@@ -46,7 +46,7 @@ typedef struct stm32_flash_regs {
     volatile uint32_t acr, keyr, optkeyr, sr, cr, ar;
 } stm32_flash_regs;
 
-#define STM32_FLASH ((stm32_flash_regs *)0x40022000u)
+#define STM32_FLASH ((stm32_flash_regs *)(uintptr_t)0x40022000u)
 #define STM32_FLASH_ACR_LATENCY 1u /* one wait state above 24 MHz */
 #define STM32_FLASH_ACR_PRFTBE (1u << 4)
 #define STM32_FLASH_KEY1 0x45670123u
@@ -67,7 +67,7 @@ typedef struct stm32_i2c_regs {
     volatile uint32_t cr1, cr2, oar1, oar2, timingr, timeoutr, isr, icr, pecr, rxdr, txdr;
 } stm32_i2c_regs;
 
-#define STM32_I2C1 ((stm32_i2c_regs *)0x40005400u)
+#define STM32_I2C1 ((stm32_i2c_regs *)(uintptr_t)0x40005400u)
 #define STM32_I2C_CR1_PE (1u << 0)
 #define STM32_I2C_CR1_TXIE (1u << 1)
 #define STM32_I2C_CR1_RXIE (1u << 2)

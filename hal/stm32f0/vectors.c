@@ -24,7 +24,7 @@ typedef union vector {
     const void *stack;
 } vector;
 
-__attribute__((section(".vectors"), used)) static const vector vectors[16 + STM32_IRQ_COUNT] = {
+__attribute__((section(".vectors"), used)) const vector stm32_vectors[16 + STM32_IRQ_COUNT] = {
     [0] = {.stack = stm32_stack_end},
     [1] = {.handler = stm32_start},
     [2] = {.handler = nmi_handler},

@@ -4,6 +4,7 @@
  * else runs in the context that calls the library.
  */
 #include "hal_template.h"
+#include <string.h>
 
 /* ---- SPI: needed for the bq76PL536 -------------------------------------------------------------- */
 
@@ -120,6 +121,112 @@ static bq_status ammeter_read(void *ctx, int32_t *current_ma)
     return BQ_E_STALE;
 }
 
+/* ---- CAN: optional, put `ops` NULL into bq_board without it ----------------------------------------- */
+
+static bq_status can_send(void *ctx, const bq_can_frame *frame)
+{
+    (void)ctx;
+    if (frame == NULL || frame->len > 8u || frame->id > (frame->extended ? 0x1fffffffu : 0x7ffu)) {
+        return BQ_E_ARG;
+    }
+    /* FILL IN: BQ_E_BUS while bus-off; BQ_E_BUSY without a free place; else queue it. The controller must
+     * send in the order of queueing, not by identifier. */
+    return BQ_E_BUS;
+}
+
+static bq_status can_receive(void *ctx, bq_can_frame *frame)
+{
+    (void)ctx;
+    /* FILL IN: the oldest frame that the interrupt has put aside. */
+    return frame == NULL ? BQ_E_ARG : BQ_PENDING;
+}
+
+static bq_can_state can_state(void *ctx)
+{
+    (void)ctx;
+    /* FILL IN: also recover from bus-off, in hardware or here, and drop what was queued. */
+    return BQ_CAN_OFF;
+}
+
+/* ---- console: optional -------------------------------------------------------------------------- */
+
+static size_t stream_write(void *ctx, const uint8_t *data, size_t len)
+{
+    (void)ctx;
+    (void)data;
+    (void)len;
+    /* FILL IN: into a ring that the transmit interrupt empties. */
+    return 0;
+}
+
+static size_t stream_read(void *ctx, uint8_t *data, size_t len)
+{
+    (void)ctx;
+    (void)data;
+    (void)len;
+    /* FILL IN: out of a ring that the receive interrupt fills. */
+    return 0;
+}
+
+/* ---- settings: optional ------------------------------------------------------------------------- */
+
+static bool inside(uint8_t sector, uint32_t offset, const void *data, size_t len)
+{
+    return data != NULL && sector < HAL_TEMPLATE_SECTORS && offset <= HAL_TEMPLATE_SECTOR_BYTES &&
+           len <= HAL_TEMPLATE_SECTOR_BYTES - offset;
+}
+
+static bq_status nvm_read(void *ctx, uint8_t sector, uint32_t offset, void *data, size_t len)
+{
+    (void)ctx;
+    if (!inside(sector, offset, data, len)) {
+        return BQ_E_ARG;
+    }
+    /* FILL IN: copy. */
+    return BQ_E_BUS;
+}
+
+static bq_status nvm_program(void *ctx, uint8_t sector, uint32_t offset, const void *data, size_t len)
+{
+    (void)ctx;
+    if (!inside(sector, offset, data, len) || (offset | len) % HAL_TEMPLATE_UNIT_BYTES != 0u) {
+        return BQ_E_ARG;
+    }
+    /* FILL IN: unlock, program, lock, read back (BQ_E_VERIFY). Begin nothing while the supply falls. */
+    return BQ_E_BUS;
+}
+
+static bq_status nvm_erase(void *ctx, uint8_t sector)
+{
+    (void)ctx;
+    if (sector >= HAL_TEMPLATE_SECTORS) {
+        return BQ_E_ARG;
+    }
+    /* FILL IN: as above; feed the watchdog if erasing takes longer than it waits. */
+    return BQ_E_BUS;
+}
+
+/* ---- the microcontroller ------------------------------------------------------------------------ */
+
+static void mcu_feed(void *ctx)
+{
+    (void)ctx;
+    /* FILL IN: restart the watchdog. */
+}
+
+static void mcu_reset(void *ctx)
+{
+    (void)ctx;
+    /* FILL IN: outputs safe, then a software reset. Does not return. */
+}
+
+static uint32_t mcu_stack_free(void *ctx)
+{
+    (void)ctx;
+    /* FILL IN: paint the stack at start, count the paint here. */
+    return UINT32_MAX;
+}
+
 /* ---- tables ---------------------------------------------------------------------------------------- */
 
 bq_status hal_template_init(hal_template *h)
@@ -130,6 +237,9 @@ bq_status hal_template_init(hal_template *h)
     h->busy = false;
     h->outcome = BQ_OK;
     h->last_ticks = 0;
+    memset(&h->boot, 0, sizeof h->boot);
+    /* FILL IN: h->boot: why the last life ended, a crash record, whether the image is whole. Until then
+     * image_ok is false and the outputs stay off. */
     /* FILL IN: clocks, pins, SPI or I2C, timer. Contactor and precharge outputs first, and open. */
     return BQ_OK;
 }
@@ -165,4 +275,32 @@ bq_ammeter hal_template_ammeter(hal_template *h)
 {
     bq_ammeter ammeter = {ammeter_read, h};
     return ammeter;
+}
+
+bq_can hal_template_can(hal_template *h)
+{
+    static const bq_can_ops ops = {can_send, can_receive, can_state};
+    bq_can can = {&ops, h};
+    return can;
+}
+
+bq_stream hal_template_stream(hal_template *h)
+{
+    static const bq_stream_ops ops = {stream_write, stream_read};
+    bq_stream stream = {&ops, h};
+    return stream;
+}
+
+bq_nvm hal_template_nvm(hal_template *h)
+{
+    static const bq_nvm_ops ops = {nvm_read, nvm_program, nvm_erase};
+    bq_nvm nvm = {&ops, h, HAL_TEMPLATE_SECTORS, HAL_TEMPLATE_UNIT_BYTES, HAL_TEMPLATE_SECTOR_BYTES};
+    return nvm;
+}
+
+bq_mcu hal_template_mcu(hal_template *h)
+{
+    static const bq_mcu_ops ops = {mcu_feed, mcu_reset, mcu_stack_free};
+    bq_mcu mcu = {&ops, h, &h->boot};
+    return mcu;
 }

@@ -76,6 +76,62 @@ static void test_no_current_is_known(void)
     TEST_ASSERT_EQUAL_INT(77, ma);
 }
 
+/* What hal.h allows is refused for want of hardware, what it forbids as a wrong argument. */
+static void test_can_is_off(void)
+{
+    bq_can can = hal_template_can(&h);
+    bq_can_frame frame = {.id = 0x7ff, .len = 8};
+    TEST_ASSERT_EQUAL_INT(BQ_E_BUS, can.ops->send(can.ctx, &frame));
+    frame.id = 0x800;
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, can.ops->send(can.ctx, &frame));
+    frame.extended = true;
+    TEST_ASSERT_EQUAL_INT(BQ_E_BUS, can.ops->send(can.ctx, &frame));
+    frame.id = 0x20000000;
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, can.ops->send(can.ctx, &frame));
+    frame = (bq_can_frame){.id = 1, .len = 9};
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, can.ops->send(can.ctx, &frame));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, can.ops->send(can.ctx, NULL));
+    TEST_ASSERT_EQUAL_INT(BQ_PENDING, can.ops->receive(can.ctx, &frame));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, can.ops->receive(can.ctx, NULL));
+    TEST_ASSERT_EQUAL_INT(BQ_CAN_OFF, can.ops->state(can.ctx));
+}
+
+static void test_console_takes_nothing(void)
+{
+    bq_stream stream = hal_template_stream(&h);
+    uint8_t byte = 'x';
+    TEST_ASSERT_EQUAL_UINT(0, stream.ops->write(stream.ctx, &byte, 1));
+    TEST_ASSERT_EQUAL_UINT(0, stream.ops->read(stream.ctx, &byte, 1));
+}
+
+static void test_memory_holds_nothing(void)
+{
+    bq_nvm nvm = hal_template_nvm(&h);
+    uint8_t data[4] = {0};
+    TEST_ASSERT_TRUE(nvm.sectors >= 2u && nvm.sector_bytes % nvm.unit_bytes == 0u);
+    TEST_ASSERT_EQUAL_INT(BQ_E_BUS, nvm.ops->read(nvm.ctx, 0, 0, data, 4));
+    TEST_ASSERT_EQUAL_INT(
+        BQ_E_BUS, nvm.ops->program(nvm.ctx, 1, nvm.sector_bytes - nvm.unit_bytes, data, nvm.unit_bytes));
+    TEST_ASSERT_EQUAL_INT(BQ_E_BUS, nvm.ops->erase(nvm.ctx, 1));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->read(nvm.ctx, nvm.sectors, 0, data, 4));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->read(nvm.ctx, 0, nvm.sector_bytes - 3u, data, 4));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->read(nvm.ctx, 0, 0, NULL, 4));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->program(nvm.ctx, 0, 1, data, nvm.unit_bytes));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->program(nvm.ctx, 0, 0, data, 1));
+    TEST_ASSERT_EQUAL_INT(BQ_E_ARG, nvm.ops->erase(nvm.ctx, nvm.sectors));
+}
+
+/* A port that forgot to check its image keeps its outputs off. */
+static void test_image_is_not_trusted(void)
+{
+    bq_mcu mcu = hal_template_mcu(&h);
+    TEST_ASSERT_TRUE(mcu.ops->feed && mcu.ops->reset);
+    TEST_ASSERT_EQUAL_UINT(UINT32_MAX, mcu.ops->stack_free(mcu.ctx));
+    TEST_ASSERT_FALSE(mcu.boot->image_ok);
+    TEST_ASSERT_FALSE(mcu.boot->crashed);
+    TEST_ASSERT_EQUAL_INT(BQ_RESET_UNKNOWN, mcu.boot->cause);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -84,5 +140,9 @@ int main(void)
     RUN_TEST(test_i2c_sends_nothing);
     RUN_TEST(test_no_line_exists);
     RUN_TEST(test_no_current_is_known);
+    RUN_TEST(test_can_is_off);
+    RUN_TEST(test_console_takes_nothing);
+    RUN_TEST(test_memory_holds_nothing);
+    RUN_TEST(test_image_is_not_trusted);
     return UNITY_END();
 }

@@ -1,39 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What both generations of the I2C peripheral share: arguments, the time limit, recovery by hand. */
-#include "stm32_chip.h"
+/* The two lines of the I2C bus, by hand: whether they are free, and how to free them. */
 #include "stm32_core.h"
 #include "stm32_gpio.h"
 #include "stm32_i2c.h"
 
-#define HALF_BIT_US 4u    /* stm32_wait_us() waits up to one more: 100 kHz */
-#define RECOVERY_US 160u  /* after this no further clock begins */
-#define BYTE_US 135u      /* nine bits of 100 kHz and a half */
-#define STRETCH_US 10000u /* what a slave may stretch in one transaction */
-
-bool stm32_i2c_legal(uint8_t address7, const bq_i2c_segment *segments, size_t count)
-{
-    if (segments == NULL || count == 0u || count > 255u || address7 > 0x7fu) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        if (segments[i].len > 0u ? segments[i].data == NULL : segments[i].read) {
-            return false;
-        }
-    }
-    return true;
-}
-
-uint32_t stm32_i2c_limit_us(const bq_i2c_segment *segments, size_t count)
-{
-    uint32_t bytes = 0;
-    for (size_t i = 0; i < count; i++) {
-        bytes += segments[i].len + 1u;
-    }
-    return bytes * BYTE_US + STRETCH_US;
-}
-
-/* ---- lines
- * --------------------------------------------------------------------------------------------------- */
+#define HALF_BIT_US 4u   /* stm32_wait_us() waits up to one more: 100 kHz */
+#define RECOVERY_US 160u /* after this no further clock begins */
 
 static bool high(const stm32_i2c *i2c, unsigned pin)
 {
