@@ -3,8 +3,6 @@
 #include "x0_internal.h"
 #include <string.h>
 
-#define STEPS_PER_POLL 64u /* longer than any chain of steps without a transfer or a wait */
-
 void x0_bump(uint32_t *counter)
 {
     if (*counter != UINT32_MAX) {
@@ -21,99 +19,87 @@ void x0_tick(bq769x0 *d)
     d->rest_us = passed % 1000u;
 }
 
-bq_status x0_wait(bq769x0 *d, uint32_t us)
+void x0_wait(bq769x0 *d, uint32_t us)
 {
-    d->io = X0_IO_WAIT;
-    d->wait_from_us = d->clock.now_us(d->clock.ctx);
-    d->wait_us = us + 1u;
-    return BQ_PENDING;
+    x0_tick(d);
+    d->due_us = d->now_us + us + 1u;
 }
 
-bq_status x0_push(bq769x0 *d, uint8_t job, unsigned reg, unsigned n)
+bq769x0_frame *x0_push(bq769x0 *d, bq769x0_job job, unsigned reg, unsigned n)
 {
-    bq769x0_frame *f = &d->frames[d->depth];
-    if (d->depth >= BQ769X0_FRAMES) {
-        d->result = BQ_E_STATE; /* cannot happen: the deepest chain of jobs is shorter */
-        return BQ_PENDING;
-    }
-    d->depth++;
+    bq769x0_frame *f = &d->frames[d->depth++];
     memset(f, 0, sizeof *f);
     f->job = job;
     f->reg = (uint8_t)reg;
     f->n = (uint8_t)n;
-    return BQ_PENDING;
+    return f;
 }
 
-bq_status x0_begin(bq769x0 *d, uint8_t job)
+void x0_run(bq769x0 *d, bq769x0_job job)
+{
+    (void)x0_push(d, job, 0, 0);
+}
+
+bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job)
 {
     if (d->depth != 0u) {
         return BQ_E_BUSY;
     }
-    (void)x0_push(d, job, 0, 0);
-    d->io = X0_IO_NONE;
-    d->last = BQ_PENDING;
+    if (d->state < least_state) {
+        return BQ_E_STATE;
+    }
+    x0_tick(d);
+    d->due_us = d->now_us;
+    x0_run(d, job);
     return BQ_OK;
 }
 
-static bq_status dispatch(bq769x0 *d, bq769x0_frame *f)
-{
-    switch (f->job) {
-#define JOB(NAME, name)                                                                                      \
-    case X0_JOB_##NAME:                                                                                      \
-        return x0_job_##name(d, f);
-        X0_JOBS(JOB)
-#undef JOB
-    default:
-        return BQ_E_STATE;
-    }
-}
-
+/* One step of the job on top. A failure ends its parents too, up to one that looks at results itself. */
 static void step(bq769x0 *d)
 {
-    bq_status st = dispatch(d, &d->frames[d->depth - 1u]);
-    if (st != BQ_PENDING) {
-        d->depth--;
-        d->result = st;
-        if (d->depth == 0u) {
-            d->last = st;
-        }
+    bq769x0_frame *f = &d->frames[d->depth - 1u];
+    int next = f->job(d, f);
+    if (next > 0) {
+        f->at = (uint8_t)(next & ~X0_CATCHES);
+        f->catches = (next & X0_CATCHES) != 0;
+        return;
     }
+    d->result = (bq_status)next;
+    do {
+        d->depth--;
+        f--;
+    } while (next != BQ_OK && d->depth != 0u && !f->catches);
 }
 
-/* True while a transfer or a wait is under way. */
-static bool held_up(bq769x0 *d, uint32_t *left_us)
+/* True while the transfer goes on. */
+static bool on_the_bus(bq769x0 *d)
 {
-    uint32_t passed = d->now_us - d->wait_from_us;
-    if (d->io == X0_IO_TRANSFER) {
-        bq_status st = d->i2c.ops->poll(d->i2c.ctx);
-        if (st == BQ_PENDING && passed < 200000u) {
+    d->transfer = d->i2c.ops->poll(d->i2c.ctx);
+    if (d->transfer == BQ_PENDING) {
+        if ((int32_t)(d->due_us - d->now_us) > 0) {
             return true;
         }
-        d->transfer = st == BQ_PENDING ? BQ_E_TIMEOUT : st;
-    } else if (d->io == X0_IO_WAIT && passed < d->wait_us) {
-        *left_us = d->wait_us - passed;
-        return true;
+        d->transfer = BQ_E_TIMEOUT;
     }
-    d->io = X0_IO_NONE;
+    d->due_us = d->now_us;
+    d->busy = false;
     return false;
 }
 
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us)
 {
-    uint32_t left = 0;
+    int32_t left = 0;
     if (d == NULL) {
         return BQ_E_ARG;
     }
     x0_tick(d);
-    d->sent = false;
-    for (unsigned n = 0; n < STEPS_PER_POLL && d->depth != 0u && !d->sent; n++) {
-        if (held_up(d, &left)) {
-            break;
+    if (!d->busy || !on_the_bus(d)) {
+        while (d->depth != 0u && !d->busy && (left = (int32_t)(d->due_us - d->now_us)) <= 0) {
+            step(d);
         }
-        step(d);
     }
     if (wait_us != NULL) {
-        *wait_us = left;
+        *wait_us = d->busy || left < 0 ? 0u : (uint32_t)left;
     }
-    return d->depth != 0u ? BQ_PENDING : d->last;
+    return d->depth != 0u ? BQ_PENDING : d->result;
 }

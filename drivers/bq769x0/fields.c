@@ -3,6 +3,7 @@
 #include "bqhost/bq769x0.h"
 
 #define U(member) BQ_FIELD(bq769x0_config, member, BQ_FIELD_UNSIGNED)
+#define S(member) BQ_FIELD(bq769x0_config, member, BQ_FIELD_SIGNED)
 #define B(member) BQ_FIELD(bq769x0_config, member, BQ_FIELD_BOOL)
 
 static const bq_field fields[] = {
@@ -31,6 +32,10 @@ static const bq_field fields[] = {
     B(counter_off),
     B(balance_across_groups),
     B(keep_fets),
+    S(die_limit_dc),
+    S(die_fault_dc),
+    U(die_check_s),
+    U(die_v25_uv),
 };
 
 const bq_field_table bq769x0_config_fields = {fields, (uint16_t)(sizeof fields / sizeof fields[0]), 0x7690,

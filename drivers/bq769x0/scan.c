@@ -1,131 +1,137 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The measurement cycle and the current in one shot (X0-SEQ-21..27, X0-SEQ-46). */
+/* One update of the whole driver: the measurement and everything that has to follow from it (X0-SEQ-21..27),
+ * and the current in one shot (X0-SEQ-46). */
 #include "x0_internal.h"
-#include <string.h>
 
-/* All measurements: one block on the largest part; on smaller ones cells and the rest apart, which costs
- * fewer bytes. */
-bq_status x0_job_picture(bq769x0 *d, bq769x0_frame *f)
+/* Number that differs when any code of the picture does. */
+static uint32_t print_of(const bq769x0 *d)
 {
-    SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < 2u; f->tries++) {
-        if (d->config.inputs == BQ769X0_INPUTS) {
-            SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_VC1_HI, 40);
-        } else {
-            SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_BAT_HI, 10);
-            memcpy(d->data + 30, d->data, 10);
-            SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_VC1_HI, 2u * d->config.inputs);
-            memmove(d->data + 2u * d->config.inputs, d->data + 30, 10);
-        }
-        x0_take_picture(d, d->data);
-        if (d->valid) {
-            break;
-        }
+    uint32_t print = 0;
+    for (unsigned i = 0; i < sizeof d->code / sizeof d->code[0]; i++) {
+        print = (print ^ d->code[i]) * 16777619u; /* FNV-1a */
     }
-    if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
-        x0_take_current(d, d->data + 2u * d->config.inputs + 8u);
+    return print;
+}
+
+/* Counts pictures that did not change: once per scan of the part, however often the host looks. */
+static void compare_pictures(bq769x0 *d)
+{
+    uint32_t print = print_of(d);
+    if (print != d->print) {
+        d->print = print;
+        d->same = 0;
+    } else if (d->now_ms - d->same_ms >= X0_SCAN_MS && d->same != UINT16_MAX) {
+        d->same++;
+        d->same_ms = d->now_ms;
     }
-    return BQ_OK;
-    SEQ_END;
 }
 
 /* No result for 600 ms, or a picture that never changes: the converter stands (X0-SEQ-25). */
 static bool stopped(const bq769x0 *d)
 {
-    bool counter = (d->shadow2 & BQ769X0_CTRL2_CC_EN) != 0u && (d->stat & BQ769X0_STAT_CC_READY) == 0u &&
-                   d->now_ms - d->cc_ms > 600u;
+    bool counter = (d->want[BQ769X0_SYS_CTRL2] & BQ769X0_CTRL2_CC_EN) != 0u &&
+                   (d->stat & BQ769X0_STAT_CC_READY) == 0u && d->now_ms - d->cc_ms > 600u;
     return counter || (d->config.frozen_scans != 0u && d->same >= d->config.frozen_scans);
 }
 
-/* SYS_STAT first and its clearing last, so that a result that arrives in between is not cleared unseen
- * (X0-SEQ-21). */
 static bool timer_over(const bq769x0 *d)
 {
     uint32_t limit_s = d->config.balance_timer_s != 0u ? d->config.balance_timer_s : 4u;
     return d->balance != 0u && d->now_ms - d->served_ms >= limit_s * 1000u;
 }
 
-bq_status x0_job_scan(bq769x0 *d, bq769x0_frame *f)
+/* Off and on again, with the whole configuration. */
+static int job_restart(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    d->faults = 0;
-    SEQ_CALL(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
-    if (d->result == BQ_OK) {
-        d->stat = d->data[0] & BQ769X0_STAT_CLEAR;
-        if ((int32_t)(d->data_ms - d->now_ms) <= 0) {
-            SEQ_CALL(d, f, X0_JOB_PICTURE, 0, 0);
-        }
-    }
-    if (d->result != BQ_OK) {
-        x0_invalidate(d, BQ_F_COMM);
-        d->scrub_ms = d->now_ms - X0_SCRUB_MS; /* X0-SEQ-53: look at the configuration once the bus is back */
-        return d->result;
-    }
-    if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
-        d->cc_ms = d->now_ms; /* also a result that came while no picture counts */
-        SEQ_TRY(d, f, X0_JOB_CLEAR, BQ769X0_STAT_CC_READY, 0);
-    }
-    if (d->valid) {
-        x0_bump(&d->stats.scans);
-    }
-    if (stopped(d)) {
-        SEQ_TRY(d, f, X0_JOB_SCRUB, 0, 0); /* after a reset it stands too, and that has its own name */
-    }
-    if (stopped(d)) {
-        x0_invalidate(d, BQ_F_LOCKUP);
-        d->same = 0;
-        d->shadow2 = 0; /* never the converter off with a FET on (X0-AMB-15) */
-        d->balance = 0;
-        SEQ_TRY(d, f, X0_JOB_OFF, 0, 0);
-        d->data[0] = 0;
-        SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL1, 1);
-        SEQ_TRY(d, f, X0_JOB_RELOAD, 0, 0);
-        return BQ_OK;
-    }
-    if ((d->stat & BQ769X0_STAT_FAULTS) != 0u || d->held != 0u) {
-        SEQ_TRY(d, f, X0_JOB_SERVICE, 0, 0);
-    }
-    if (timer_over(d)) {
-        d->balance = 0;
-        d->faults |= BQ_F_BALANCE;
-        SEQ_TRY(d, f, X0_JOB_OFF, 0, 0);
-    }
-    if (d->now_ms - d->scrub_ms >= X0_SCRUB_MS) {
-        SEQ_TRY(d, f, X0_JOB_SCRUB, 0, 0);
-    }
+    x0_invalidate(d, BQ_F_LOCKUP);
+    d->same = 0;
+    d->want[BQ769X0_SYS_CTRL2] = 0; /* never the converter off with a FET on (X0-AMB-15) */
+    x0_balance(d, 0);
+    SEQ_TRY(1, x0_run(d, x0_job_off));
+    d->want[BQ769X0_SYS_CTRL1] = 0;
+    SEQ_TRY(2, x0_set(d, BQ769X0_SYS_CTRL1, 1));
+    SEQ_TRY(3, x0_run(d, x0_job_reload));
     return BQ_OK;
     SEQ_END;
 }
 
-/* A window that runs while the counter is switched off may still end with a result (X0-AMB-26): that one is
- * dropped. Afterwards the counter is as configured. */
-bq_status x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
+int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
+    x0_die_before_picture(d);
+    f->i = (uint8_t)d->sequence;
+    d->charge_ms = d->cc_ms;
+    SEQ_TRY(1, x0_run(d, x0_job_measure));
+    if (f->i != (uint8_t)d->sequence) {
+        compare_pictures(d);
+        if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
+            x0_count_charge(d);
+        }
+        x0_die_after_picture(d);
+    }
+    if (stopped(d)) {
+        SEQ_TRY(2, x0_run(d, x0_job_scrub)); /* after a reset it stands too, and that has its own name */
+    }
+    if (stopped(d)) {
+        SEQ_TRY(3, x0_run(d, job_restart));
+        return BQ_OK;
+    }
+    if (x0_events(d) != 0u) {
+        SEQ_TRY(4, x0_run(d, x0_job_service));
+    }
+    if (timer_over(d)) {
+        d->asked = 0;
+        x0_balance(d, 0);
+        d->faults |= BQ_F_BALANCE;
+        SEQ_TRY(5, x0_run(d, x0_job_off));
+    }
+    if (d->now_ms - d->scrub_ms >= X0_SCRUB_MS) {
+        SEQ_TRY(6, x0_run(d, x0_job_scrub));
+    }
+    SEQ_TRY(7, x0_run(d, x0_job_die));
+    return BQ_OK;
+    SEQ_END;
+}
+
+static void counter_on(bq769x0 *d)
+{
+    d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
+}
+
+/* A window that runs while the counter is switched off may still end with a result (X0-AMB-26): that one is
+ * dropped. Afterwards the counter is as configured. */
+int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
+{
+    uint8_t *ctrl2 = &d->want[BQ769X0_SYS_CTRL2];
+    SEQ_BEGIN(f)
     for (f->tries = 0; f->tries < 3u; f->tries++) {
-        d->data[0] = d->shadow2 & (uint8_t)~BQ769X0_CTRL2_CC_EN;
-        SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL2, 1);
-        if ((d->shadow2 & BQ769X0_CTRL2_CC_EN) != 0u) {
-            d->shadow2 &= (uint8_t)~BQ769X0_CTRL2_CC_EN;
-            SEQ_WAIT(d, f, 260000u);
+        f->x = *ctrl2 & BQ769X0_CTRL2_CC_EN;
+        *ctrl2 &= (uint8_t)~BQ769X0_CTRL2_CC_EN;
+        SEQ_TRY(1, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+        if (f->x != 0u) {
+            SEQ_YIELD(2, x0_wait(d, 260000u));
         }
-        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
-        if ((d->data[0] & BQ769X0_STAT_CC_READY) != 0u) {
-            SEQ_TRY(d, f, X0_JOB_CLEAR, BQ769X0_STAT_CC_READY, 0);
+        SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+        d->want[0] = d->data[0] & BQ769X0_STAT_CC_READY;
+        if (d->want[0] != 0u) {
+            SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
         }
-        d->cc_ms = d->now_ms;
-        d->data[0] = (uint8_t)(d->shadow2 | BQ769X0_CTRL2_CC_ONESHOT);
-        SEQ_SEND(f, x0_send_write(d, BQ769X0_SYS_CTRL2, 1)); /* a lost answer shows as no result */
-        for (f->i = 0; f->i < 4u; f->i++) {                  /* 260, 375, 490, 605 ms */
-            SEQ_WAIT(d, f, f->i == 0u ? 260000u : 115000u);
-            SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
+        d->charge_ms = d->now_ms;
+        *ctrl2 |= BQ769X0_CTRL2_CC_ONESHOT;
+        SEQ_CALL(5, x0_once(d, BQ769X0_SYS_CTRL2, 1, false)); /* a lost answer shows as no result */
+        *ctrl2 &= (uint8_t)~BQ769X0_CTRL2_CC_ONESHOT;
+        for (f->i = 0; f->i < 4u; f->i++) { /* 260, 375, 490, 605 ms */
+            SEQ_YIELD(6, x0_wait(d, f->i == 0u ? 260000u : 115000u));
+            SEQ_TRY(7, x0_fetch(d, BQ769X0_SYS_STAT, 1));
             if ((d->data[0] & BQ769X0_STAT_CC_READY) != 0u) {
-                SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_CC_HI, 2);
+                SEQ_TRY(8, x0_fetch(d, BQ769X0_CC_HI, 2));
                 x0_take_current(d, d->data);
-                SEQ_TRY(d, f, X0_JOB_CLEAR, BQ769X0_STAT_CC_READY, 0);
-                d->shadow2 |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
-                d->data[0] = d->shadow2;
-                SEQ_TRY(d, f, X0_JOB_SET, BQ769X0_SYS_CTRL2, 1);
+                x0_count_charge(d);
+                d->want[0] = BQ769X0_STAT_CC_READY;
+                SEQ_TRY(9, x0_put(d, BQ769X0_SYS_STAT, 1));
+                counter_on(d);
+                SEQ_TRY(10, x0_set(d, BQ769X0_SYS_CTRL2, 1));
                 return BQ_OK;
             }
         }

@@ -4,84 +4,77 @@
 #include "x0_internal.h"
 #include <string.h>
 
-static bq_status start(bq769x0 *d, size_t segments)
-{
-    d->sent = true;
-    d->wait_from_us = d->now_us;
-    d->stats.bytes += (uint32_t)d->segments[0].len + 1u + (segments > 1u ? d->segments[1].len + 1u : 0u);
-    x0_bump(&d->stats.packets);
-    d->transfer = d->i2c.ops->start(d->i2c.ctx, d->achieved.address7, d->segments, segments);
-    if (d->transfer == BQ_OK) {
-        d->io = X0_IO_TRANSFER;
-    }
-    return BQ_PENDING;
-}
+#define READING 0x80u       /* in the frame of a transfer, beside the number of registers */
+#define PATIENCE_US 200000u /* with a transfer that does not end */
 
-bq_status x0_send_read(bq769x0 *d, unsigned reg, unsigned n)
+/* Walks over the data bytes of d->bus: puts them there from d->want, or takes them to d->data. With CRC each
+ * is followed by its own; the first also covers the address, and in a write the register (X0-I2C-12..15).
+ * False: a CRC is wrong. */
+static bool walk(bq769x0 *d, const bq769x0_frame *f)
 {
-    d->pointer = (uint8_t)reg;
-    d->reading = true;
-    d->segments[0] = (bq_i2c_segment){&d->pointer, 1, false, false};
-    d->segments[1] = (bq_i2c_segment){d->bus, (uint16_t)(d->achieved.crc ? 2u * n : n), true, true};
-    return start(d, 2);
-}
-
-/* The first CRC covers address, register and data; each further one its data byte alone (X0-I2C-12,
- * X0-I2C-13). */
-bq_status x0_send_write(bq769x0 *d, unsigned reg, unsigned n)
-{
-    uint8_t head[2] = {(uint8_t)(d->achieved.address7 << 1), (uint8_t)reg};
-    uint8_t crc = bq_crc8(0, head, 2);
-    unsigned length = 0;
-    d->reading = false;
-    d->bus[length++] = (uint8_t)reg;
-    for (unsigned i = 0; i < n; i++) {
-        d->bus[length++] = d->data[i];
-        if (d->achieved.crc) {
-            d->bus[length++] = bq_crc8(crc, &d->data[i], 1);
+    bool reading = f->n >= READING;
+    uint8_t *data = reading ? d->data : &d->want[f->reg], *at = d->bus + 2;
+    uint8_t crc = bq_crc8(0, d->bus, reading ? 1u : 2u);
+    for (unsigned n = f->n & ~READING; n != 0u; n--, data++) {
+        uint8_t *byte = at++;
+        if (reading) {
+            *data = *byte;
+        } else {
+            *byte = *data;
+        }
+        if (d->crc) {
+            crc = bq_crc8(crc, data, 1);
+            if (!reading) {
+                *at = crc;
+            }
+            if (*at++ != crc) {
+                return false;
+            }
             crc = 0;
         }
     }
-    d->segments[0] = (bq_i2c_segment){d->bus, (uint16_t)length, false, true};
-    return start(d, 1);
+    return true;
+}
+
+static void send(bq769x0 *d, const bq769x0_frame *f)
+{
+    bool reading = f->n >= READING;
+    unsigned length = (f->n & ~READING) << d->crc;
+    d->bus[0] = (uint8_t)(d->address7 * 2u + reading);
+    d->bus[1] = f->reg;
+    d->segments[0].data = d->bus + 1;
+    d->segments[0].len = (uint16_t)(reading ? 1u : length + 1u);
+    d->segments[1].data = d->bus + 2;
+    d->segments[1].len = (uint16_t)length;
+    d->segments[1].read = true; /* the last segment ends with STOP */
+    if (!reading) {
+        (void)walk(d, f);
+    }
+    d->stats.bytes += length + 2u + reading;
+    x0_bump(&d->stats.packets);
+    d->due_us = d->now_us + PATIENCE_US;
+    d->transfer = d->i2c.ops->start(d->i2c.ctx, d->address7, d->segments, reading ? 2u : 1u);
+    d->busy = d->transfer == BQ_OK;
+    if (!d->busy) {
+        d->due_us = d->now_us;
+    }
 }
 
 /* Judges the transaction that ended last; after a good read d->data holds the registers. */
-bq_status x0_reply(bq769x0 *d)
+static bq_status judge(bq769x0 *d, const bq769x0_frame *f)
 {
-    unsigned n = d->segments[1].len;
-    uint8_t crc, address = (uint8_t)(d->achieved.address7 * 2u + 1u);
-    if (d->transfer != BQ_OK) {
-        x0_bump(d->transfer == BQ_E_NACK ? &d->stats.no_answers : &d->stats.bus_errors);
-        return d->transfer;
-    }
-    if (!d->reading) {
-        return BQ_OK;
-    }
-    crc = bq_crc8(0, &address, 1);
-    for (unsigned i = 0; i < n; i++) {
-        unsigned k = d->achieved.crc ? i >> 1 : i;
-        if (!d->achieved.crc || (i & 1u) == 0u) {
-            d->data[k] = d->bus[i];
-        } else if (bq_crc8(crc, &d->data[k], 1) != d->bus[i]) {
-            x0_bump(&d->stats.crc_errors);
-            return BQ_E_CRC;
-        } else {
-            crc = 0;
+    uint32_t *counter = &d->stats.bus_errors;
+    if (d->transfer == BQ_OK) {
+        if (f->n < READING || walk(d, f)) {
+            return BQ_OK;
         }
+        d->transfer = BQ_E_CRC;
+        counter = &d->stats.crc_errors;
+    } else if (d->transfer == BQ_E_NACK) {
+        counter = &d->stats.no_answers;
     }
-    return BQ_OK;
-}
-
-/* What to do between two tries: after silence 1 ms, after anything that may be a stuck bus its recovery, and
- * then the scrub (X0-SEQ-51, X0-SEQ-52, X0-SEQ-53). `tries` = failures so far. */
-static bq_status between_tries(bq769x0 *d, bq_status st, unsigned tries)
-{
-    x0_bump(&d->stats.retries);
-    if (st != BQ_E_CRC && (st != BQ_E_NACK || tries >= X0_TRIES)) {
-        x0_recover(d);
-    }
-    return x0_wait(d, 1000u);
+    x0_bump(counter);
+    return d->transfer;
 }
 
 void x0_recover(bq769x0 *d)
@@ -89,115 +82,93 @@ void x0_recover(bq769x0 *d)
     if (d->i2c.ops->recover != NULL) {
         (void)d->i2c.ops->recover(d->i2c.ctx);
     }
-    d->scrub_ms = d->now_ms - X0_SCRUB_MS;
+    d->scrub_ms = d->now_ms - X0_SCRUB_MS; /* X0-SEQ-53 */
 }
 
-/* A silent part is asked once more after the bus was recovered. */
-static bool gives_up(bq769x0_frame *f, bq_status st)
-{
-    return ++f->tries >= X0_TRIES + (st == BQ_E_NACK ? 1u : 0u);
-}
-
-/* Every try begins with the pointer (X0-SEQ-48): the part's own has moved on. */
-bq_status x0_job_read(bq769x0 *d, bq769x0_frame *f)
-{
-    bq_status st;
-    SEQ_BEGIN(f)
-    for (;;) {
-        SEQ_SEND(f, x0_send_read(d, f->reg, f->n));
-        st = x0_reply(d);
-        if (st == BQ_OK || gives_up(f, st)) {
-            return st;
-        }
-        SEQ_SEND(f, between_tries(d, st, f->tries));
-    }
-    SEQ_END;
-}
-
-/* The same registers twice running, for what is read once and used for ever (X0-SEQ-11). */
-bq_status x0_job_agree(bq769x0 *d, bq769x0_frame *f)
-{
-    SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < 4u; f->tries++) {
-        SEQ_TRY(d, f, X0_JOB_READ, f->reg, f->n);
-        if (f->tries != 0u && memcmp(d->data, d->data + X0_WANTED, f->n) == 0) {
-            return BQ_OK;
-        }
-        memcpy(d->data + X0_WANTED, d->data, f->n);
-    }
-    return BQ_E_IMPLAUSIBLE;
-    SEQ_END;
-}
-
-bq_status x0_job_write(bq769x0 *d, bq769x0_frame *f)
-{
-    bq_status st;
-    SEQ_BEGIN(f)
-    for (;;) {
-        SEQ_SEND(f, x0_send_write(d, f->reg, f->n));
-        st = x0_reply(d);
-        if (st == BQ_OK || gives_up(f, st)) {
-            return st;
-        }
-        x0_bump(&d->stats.write_errors);
-        SEQ_SEND(f, between_tries(d, st, f->tries));
-    }
-    SEQ_END;
-}
-
-/* Writes `reg` (bits) to SYS_STAT; after a failure only what still reads as set is written again, so that an
+/* Every try begins with the pointer (X0-SEQ-48): the part's own has moved on. After silence 1 ms passes,
+ * after anything that may be a stuck bus its recovery; a silent part is asked once more after that
+ * (X0-SEQ-51, X0-SEQ-52). A clearing of SYS_STAT is repeated only for what still reads as set, so that an
  * event that came in between is not cleared unseen (X0-SEQ-50, X0-BIT-09). */
-bq_status x0_job_clear(bq769x0 *d, bq769x0_frame *f)
+int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
 {
-    bq_status st;
     SEQ_BEGIN(f)
     for (;;) {
-        d->data[0] = f->reg;
-        SEQ_SEND(f, x0_send_write(d, BQ769X0_SYS_STAT, 1));
-        st = x0_reply(d);
-        if (st == BQ_OK || gives_up(f, st)) {
-            return st;
-        }
-        SEQ_SEND(f, between_tries(d, st, f->tries));
-        SEQ_TRY(d, f, X0_JOB_READ, BQ769X0_SYS_STAT, 1);
-        f->reg &= d->data[0];
-        if (f->reg == 0u) {
+        bool silent;
+        SEQ_YIELD(1, send(d, f));
+        if (judge(d, f) == BQ_OK) {
             return BQ_OK;
+        }
+        silent = d->transfer == BQ_E_NACK;
+        if (++f->tries >= X0_TRIES + silent) {
+            return d->transfer;
+        }
+        x0_bump(&d->stats.retries);
+        if (d->transfer != BQ_E_CRC && (!silent || f->tries >= X0_TRIES)) {
+            x0_recover(d);
+        }
+        SEQ_YIELD(2, x0_wait(d, 1000u));
+        if (f->n < READING) {
+            x0_bump(&d->stats.write_errors);
+            if (f->reg == BQ769X0_SYS_STAT) {
+                SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+                d->want[0] &= d->data[0];
+            }
         }
     }
     SEQ_END;
 }
 
-/* Whether register `reg` reads as it should: reserved bits are masked (X0-BIT-03), and a FET that the chip
- * took back is no difference: whoever turned it on looks himself. */
-bool x0_same(unsigned reg, uint8_t read, uint8_t wanted)
+void x0_fetch(bq769x0 *d, unsigned reg, unsigned n)
 {
-    static const uint8_t mask[] = {0x1f, 0x1f, 0x1f, 0x1f, 0xc0, 0x9f, 0x7f, 0xf0, 0xff, 0xff, 0x3f};
-    uint8_t extra = reg == BQ769X0_SYS_CTRL2 ? (uint8_t)(read & ~wanted & BQ769X0_CTRL2_FETS) : 0u;
-    return (((read ^ wanted) & mask[reg - 1u]) | extra) == 0;
+    (void)x0_push(d, x0_job_transfer, reg, n | READING);
 }
 
-/* Writes up to six registers from d->data, reads them back and compares (X0-SEQ-16). d->data holds what was
- * read. */
-bq_status x0_job_set(bq769x0 *d, bq769x0_frame *f)
+void x0_put(bq769x0 *d, unsigned reg, unsigned n)
+{
+    (void)x0_push(d, x0_job_transfer, reg, n);
+}
+
+/* One try only. */
+void x0_once(bq769x0 *d, unsigned reg, unsigned n, bool reading)
+{
+    x0_push(d, x0_job_transfer, reg, reading ? n | READING : n)->tries = X0_TRIES;
+}
+
+/* Whether registers `reg`.. as read hold what they should: reserved bits are masked (X0-BIT-03), and a FET
+ * that the chip took back is no difference: whoever turned it on looks himself. */
+bool x0_holds(const bq769x0 *d, unsigned reg, unsigned n)
+{
+    static const uint8_t mask[] = {0, 0x1f, 0x1f, 0x1f, 0x1f, 0xc3, 0x9f, 0x7f, 0xf0, 0xff, 0xff, 0x3f};
+    for (unsigned i = 0; i < n; i++, reg++) {
+        unsigned differs = (unsigned)(d->data[i] ^ d->want[reg]) & mask[reg];
+        if (reg == BQ769X0_SYS_CTRL2) {
+            differs &= ~(d->want[reg] & BQ769X0_CTRL2_FETS);
+        }
+        if (differs != 0u) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Writes registers as they should be, reads them back and compares (X0-SEQ-16). d->data holds what was read.
+ */
+int x0_job_set(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    memcpy(d->data + X0_WANTED, d->data, f->n);
-    for (;;) {
-        SEQ_TRY(d, f, X0_JOB_WRITE, f->reg, f->n);
-        SEQ_TRY(d, f, X0_JOB_READ, f->reg, f->n);
-        f->x = 0;
-        for (unsigned i = 0; i < f->n; i++) {
-            f->x |= (uint8_t)!x0_same(f->reg + i, d->data[i], d->data[X0_WANTED + i]);
-        }
-        if (f->x == 0u) {
+    for (f->tries = 0; f->tries < X0_TRIES; f->tries++) {
+        SEQ_TRY(1, x0_put(d, f->reg, f->n));
+        SEQ_TRY(2, x0_fetch(d, f->reg, f->n));
+        if (x0_holds(d, f->reg, f->n)) {
             return BQ_OK;
         }
         x0_bump(&d->stats.write_errors);
-        if (++f->tries >= X0_TRIES) {
-            return BQ_E_VERIFY;
-        }
-        memcpy(d->data, d->data + X0_WANTED, f->n);
     }
+    return BQ_E_VERIFY;
     SEQ_END;
+}
+
+void x0_set(bq769x0 *d, unsigned reg, unsigned n)
+{
+    (void)x0_push(d, x0_job_set, reg, n);
 }

@@ -1,86 +1,125 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Inside of the bq769x0 driver. As in the bq76PL536 driver, everything on the bus is a job that reads from
- * top to bottom like the procedure it carries out; SEQ_... macros remember in its frame where it goes on.
- * Local variables do not survive a SEQ_ line. The frames form a fixed stack in the instance, called directly:
- * no recursion, no stored function pointer.
+ * Inside of the bq769x0 driver. Everything on the bus is a job that reads from top to bottom like the
+ * procedure it carries out. Local variables do not survive a SEQ_ line; what must survive lives in the job's
+ * frame or in the instance. The frames form a fixed stack in the instance.
+ *
+ * A job is named where it is begun or called and nowhere else, so a linker keeps only the jobs that something
+ * in the program can begin. Base set: engine.c, transfer.c, configure.c, measure.c, sample.c, outputs.c.
  */
 #ifndef X0_INTERNAL_H
 #define X0_INTERNAL_H
 
 #include "bqhost/bq769x0.h"
 #include "bqhost/bq769x0_regs.h"
-#include "bqhost/seq.h"
 
-enum { X0_IO_NONE, X0_IO_TRANSFER, X0_IO_WAIT };
-enum { X0_STATE_NONE, X0_STATE_READY, X0_STATE_SHIP };
+enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 
 #define X0_TRIES 3u
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-#define X0_WANTED 34u    /* where in d->data the other side of a comparison of up to six registers lies */
+#define X0_BAT 15u       /* where BAT and TS1 lie in d->code */
+#define X0_TS 16u
+#define X0_TAIL 30u /* where BAT lies in d->data after a picture, two bytes a register pair */
+#define X0_CC 38u   /* ... and the result of the coulomb counter */
 
-#define X0_JOBS(JOB)                                                                                         \
-    JOB(READ, read)                                                                                          \
-    JOB(WRITE, write)                                                                                        \
-    JOB(AGREE, agree) JOB(CLEAR, clear) JOB(SET, set) JOB(START, start) JOB(BOOT, boot)                      \
-        JOB(IDENTIFY, identify) JOB(PROBE_CRC, probe_crc) JOB(TRIM, trim) JOB(CONFIGURE, configure)          \
-            JOB(FIRST, first) JOB(SCAN, scan) JOB(SCRUB, scrub) JOB(SERVICE, service) JOB(APPLY, apply)      \
-                JOB(OFF, off) JOB(SWITCHES, switches) JOB(SHIP, ship) JOB(ONESHOT, oneshot)                  \
-                    JOB(COMPARE, compare) JOB(PICTURE, picture) JOB(PAST, past) JOB(RELOAD, reload)          \
-                        JOB(FIND, find)
-
-enum x0_job {
-#define JOB(NAME, name) X0_JOB_##NAME,
-    X0_JOBS(JOB)
-#undef JOB
-        X0_JOB_COUNT
-};
-#define JOB(NAME, name) bq_status x0_job_##name(bq769x0 *d, bq769x0_frame *f);
-X0_JOBS(JOB)
-#undef JOB
-
-#define SEQ_SEND(f, start) SEQ_YIELD(f, start)
-#define SEQ_WAIT(d, f, us) SEQ_YIELD(f, x0_wait((d), (us)))
-#define SEQ_CALL(d, f, job, reg, n) SEQ_YIELD(f, x0_push((d), (job), (reg), (n)))
-#define SEQ_TRY(d, f, job, reg, n)                                                                           \
+/* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
+ * compiler refuses doubles. */
+#define SEQ_BEGIN(f)                                                                                         \
+    switch ((f)->at) {                                                                                       \
+    case 0:
+#define SEQ_END                                                                                              \
+    }                                                                                                        \
+    return BQ_E_STATE
+/* Goes on when what `start` started has ended. */
+#define SEQ_YIELD(point, start)                                                                              \
     do {                                                                                                     \
-        SEQ_CALL(d, f, job, reg, n);                                                                         \
-        if ((d)->result != BQ_OK) {                                                                          \
-            return (d)->result;                                                                              \
-        }                                                                                                    \
+        (start);                                                                                             \
+        return (point);                                                                                      \
+    case (point):;                                                                                           \
     } while (0)
+/* Runs a child; its failure is the failure of this job too. */
+#define SEQ_TRY(point, child) SEQ_YIELD(point, child)
+/* Runs a child and goes on whatever came of it: d->result tells. */
+#define SEQ_CALL(point, child)                                                                               \
+    do {                                                                                                     \
+        (child);                                                                                             \
+        return (point) + X0_CATCHES;                                                                         \
+    case (point):;                                                                                           \
+    } while (0)
+#define X0_CATCHES 0x80
 
-bq_status x0_push(bq769x0 *d, uint8_t job, unsigned reg, unsigned n);
-bq_status x0_wait(bq769x0 *d, uint32_t us);
-bq_status x0_begin(bq769x0 *d, uint8_t job);
+/* engine.c */
+bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job);
+bq769x0_frame *x0_push(bq769x0 *d, bq769x0_job job, unsigned reg, unsigned n);
+void x0_run(bq769x0 *d, bq769x0_job job);
+void x0_wait(bq769x0 *d, uint32_t us);
 void x0_tick(bq769x0 *d);
 void x0_bump(uint32_t *counter);
 
-/* transfer.c: one transaction of n registers to or from d->data; d->transfer tells how it ended. */
-bq_status x0_send_read(bq769x0 *d, unsigned reg, unsigned n);
-bq_status x0_send_write(bq769x0 *d, unsigned reg, unsigned n);
-bq_status x0_reply(bq769x0 *d);
+/* transfer.c: children of a job. Reads arrive in d->data, what is written lies in d->want. */
+void x0_fetch(bq769x0 *d, unsigned reg, unsigned n);
+void x0_put(bq769x0 *d, unsigned reg, unsigned n);
+void x0_set(bq769x0 *d, unsigned reg, unsigned n); /* written, read back, compared */
+bool x0_holds(const bq769x0 *d, unsigned reg, unsigned n);
 void x0_recover(bq769x0 *d);
-bool x0_same(unsigned reg, uint8_t read, uint8_t wanted);
+int x0_job_transfer(bq769x0 *d, bq769x0_frame *f);
+int x0_job_set(bq769x0 *d, bq769x0_frame *f);
 
-/* start.c */
-void x0_drive(const bq769x0 *d, bq_line line, bool level);
-uint32_t x0_first_ms(const bq769x0 *d);
+/* configure.c */
+int x0_job_configure(bq769x0 *d, bq769x0_frame *f);
+int x0_job_agree(bq769x0 *d, bq769x0_frame *f);
 
-/* picture.c */
-void x0_take_picture(bq769x0 *d, const uint8_t *block);
+/* init.c */
+bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, const bq_i2c *i2c,
+                  const bq_clock *clock);
+unsigned x0_bits(unsigned mask);
+
+/* measure.c */
+int x0_job_measure(bq769x0 *d, bq769x0_frame *f);
+int x0_job_picture(bq769x0 *d, bq769x0_frame *f);
 void x0_take_current(bq769x0 *d, const uint8_t *cc);
-int32_t x0_cell_mv(const bq769x0 *d, unsigned input);
 void x0_invalidate(bq769x0 *d, uint16_t fault);
 
-/* the six configuration registers 0x06..0x0b as they should be */
-void x0_image(const bq769x0 *d, uint8_t image[6]);
+/* sample.c */
+uint32_t x0_cell_mv(const bq769x0 *d, unsigned input);
+uint16_t x0_flags(unsigned events);
 
-static inline uint8_t x0_groups(const bq769x0 *d)
+/* outputs.c */
+unsigned x0_allowed(unsigned events);
+void x0_balance(bq769x0 *d, unsigned cells);
+
+/* beyond the base set */
+void x0_once(bq769x0 *d, unsigned reg, unsigned n, bool reading);
+void x0_drive(const bq769x0 *d, bq_line line, bool level);
+uint32_t x0_first_ms(const bq769x0 *d);
+void x0_count_charge(bq769x0 *d);
+void x0_die_reset(bq769x0 *d);
+void x0_die_before_picture(bq769x0 *d);
+void x0_die_after_picture(bq769x0 *d);
+int x0_job_start(bq769x0 *d, bq769x0_frame *f);
+int x0_job_boot(bq769x0 *d, bq769x0_frame *f);
+int x0_job_scan(bq769x0 *d, bq769x0_frame *f);
+int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f);
+int x0_job_service(bq769x0 *d, bq769x0_frame *f);
+int x0_job_off(bq769x0 *d, bq769x0_frame *f);
+int x0_job_compare(bq769x0 *d, bq769x0_frame *f);
+int x0_job_scrub(bq769x0 *d, bq769x0_frame *f);
+int x0_job_reload(bq769x0 *d, bq769x0_frame *f);
+int x0_job_ship(bq769x0 *d, bq769x0_frame *f);
+int x0_job_die(bq769x0 *d, bq769x0_frame *f);
+
+/* Events of SYS_STAT that stand: not released, or just read. */
+static inline unsigned x0_events(const bq769x0 *d)
 {
-    return (uint8_t)(d->config.inputs / 5u);
+    return (unsigned)(d->held | d->stat) & BQ769X0_STAT_FAULTS;
+}
+
+/* True once the clock has reached `ms`. */
+static inline bool x0_reached(const bq769x0 *d, uint32_t ms)
+{
+    return (int32_t)(d->now_ms - ms) >= 0;
 }
 
 #endif

@@ -23,6 +23,8 @@ extern "C" {
 
 typedef enum bq769x0_crc { BQ769X0_CRC_PROBE, BQ769X0_CRC_OFF, BQ769X0_CRC_ON } bq769x0_crc;
 
+#define BQ769X0_DIE_NEVER 255u
+
 /** What the user wants. Validated whole by bq769x0_init(). Limits are achieved never looser than asked, see
  * bq769x0_convert.h. */
 typedef struct bq769x0_config {
@@ -52,6 +54,12 @@ typedef struct bq769x0_config {
     bool counter_off;        /**< leave the coulomb counter off: current by bq769x0_begin_oneshot() alone */
     bool balance_across_groups; /**< allow 5+6 and 10+11 together (X0-AMB-61) */
     bool keep_fets;             /**< warm start: leave the FETs of a running part as they are */
+    /* die temperature (X0-SEQ-44, X0-DIE-04, X0-DIE-05), of the hottest of the part's sensors */
+    int16_t die_limit_dc; /**< above: no balancing, until it is 10 degrees lower; 1..950; 0 = 850 (85 C) */
+    int16_t die_fault_dc; /**< above: BQ_F_DIE_TEMP, until it is 10 degrees lower; 1..1000; 0 = 950 */
+    uint8_t die_check_s;  /**< with sensors > 0: seconds between two looks at the die while balancing is asked
+                               for or the die is hot; 5..254; 0 = 60; BQ769X0_DIE_NEVER = no look at all */
+    uint32_t die_v25_uv;  /**< voltage of the die sensor at 25 C, 1100000..1300000; 0 = 1200000 */
 } bq769x0_config;
 
 /** What the chip really does, known after bring-up. */
@@ -94,7 +102,9 @@ bq_status bq769x0_begin_start(bq769x0 *d);
 /** Begins one update: SYS_STAT, one block of all measurements, write-1-to-clear of CC_READY (three
  * transactions), and every second the scrub; then fault service and recovery when a fault bit is set. */
 bq_status bq769x0_begin_scan(bq769x0 *d);
-/** Begins to carry out an action: FETs and balancing outputs, verified. */
+/** Begins to carry out an action: FETs and balancing outputs, verified. Of neighbours that are asked for, one
+ * and the other are bled in turns of 4.1 s, and where balance_max is less than asked, the turn goes round:
+ * every cell that is asked for gets its share. No cell is bled while a fault stands or the die is too hot. */
 bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action);
 /** Begins a comparison of every configuration register with what it should hold. */
 bq_status bq769x0_begin_self_test(bq769x0 *d);
@@ -109,9 +119,9 @@ bq_status bq769x0_begin_oneshot(bq769x0 *d);
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us);
 /** See bq_afe_ops.sample. Ages include the 250 ms that a result may already be old when it is read. Chip
  * faults in modules[0].faults: OCD = BQ_F_OVERCURRENT, SCD = BQ_F_SHORT, OV, UV as named, the ALERT override
- * = BQ_F_CHAIN (what hangs on the ALERT line), DEVICE_XREADY = BQ_F_MEMORY, and after it came back three
- * times BQ_F_DEFECTIVE, an input below 0x0518 that should carry a cell = BQ_F_OPEN_WIRE. They stand until the
- * release conditions held long enough. */
+ * = BQ_F_CHAIN (what hangs on the ALERT line), die above die_fault_dc = BQ_F_DIE_TEMP, DEVICE_XREADY =
+ * BQ_F_MEMORY, and after it came back three times BQ_F_DEFECTIVE, an input below 0x0518 that should carry a
+ * cell = BQ_F_OPEN_WIRE. They stand until the release conditions held long enough. */
 bq_status bq769x0_sample(bq769x0 *d, bq_sample *sample);
 
 /** GAIN2 calibration (X0-SEQ-45): `stack_mv` was measured by the host at rest; every cell is scaled by it
@@ -130,11 +140,44 @@ void bq769x0_charge_reset(bq769x0 *d);
  * then, and back the line up by the same poll. Costs one pin read. */
 bool bq769x0_alert_pending(const bq769x0 *d);
 
+/** The die's temperature, hottest sensor, in tenths of a degree C, and its age. With sensors = 0 it is part
+ * of every picture. With thermistors the driver switches the source over for about 5 s at a time (X0-SEQ-44):
+ * the sample meanwhile repeats the last values of the thermistors, which count for 10 s at most. BQ_OK;
+ * BQ_E_STALE: not seen yet, or what was read cannot be a temperature (balancing is then off too). */
+bq_status bq769x0_get_die(const bq769x0 *d, int16_t *dc, uint32_t *age_ms);
+
 /** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). */
 void bq769x0_unlock(bq769x0 *d);
 
 /** The fields of bq769x0_config that a record of the settings holds (settings.h): all but the pointers. */
 extern const bq_field_table bq769x0_config_fields;
+
+/* ---- the base set -------------------------------------------------------------------------------
+ * For a firmware with little flash: measuring, protecting, balancing. A program that uses only these
+ * functions, bq769x0_begin_apply(), bq769x0_poll() and bq769x0_sample() links nothing of bring-up by probing,
+ * fault recovery, scrub, die temperature, charge counting, SHIP. What is then left to the caller: the part
+ * must be booted; after a fault it is he who decides when to clear; after a reset of the part (BQ_E_... of a
+ * scan, or registers at zero: no valid picture) he configures again. FETs stay off while a fault bit stands.
+ */
+
+/** As bq769x0_init() for a part whose address, CRC option and wiring are given in `config` and true; the
+ * pointers are not null and `inputs` is 5, 10 or 15. Touches no bus. BQ_OK; BQ_E_CELLS, BQ_E_RANGE (shunt,
+ * sensors), BQ_E_NO_CODE, BQ_E_CONFIG as there, and the instance is then as before. Not used here: recovery
+ * thresholds, settle time, frozen_scans, balance_timer_s, balance_across_groups, keep_fets, die_.... */
+bq_status bq769x0_init_known(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c,
+                             const bq_clock *clock);
+/** Begins configuration of a part that is awake: trim, limits in this device's codes, FETs and balancing off,
+ * converters on; every register read back. Ends with BQ_OK; BQ_E_NO_CODE (a voltage limit this device cannot
+ * hold); BQ_E_VERIFY; BQ_E_IMPLAUSIBLE (the trim reads differently each time); a bus error. Legal in every
+ * state; BQ_E_BUSY while a job runs. */
+bq_status bq769x0_begin_configure(bq769x0 *d);
+/** Begins one measurement in three transactions. The faults that SYS_STAT reports are in the next sample and
+ * stand until a later measurement reads them as gone. Ends with BQ_OK or a bus error (the sample is then not
+ * valid, with BQ_F_COMM). BQ_E_STATE before configuration. */
+bq_status bq769x0_begin_measure(bq769x0 *d);
+/** Begins to clear exactly the fault bits that the last measurement read; an event that comes in between is
+ * kept. BQ_OK, BQ_E_BUSY, BQ_E_STATE; ends with BQ_OK or a bus error. */
+bq_status bq769x0_begin_clear(bq769x0 *d);
 
 /** Fills the interface the super-loop uses. */
 bq_afe bq769x0_afe(bq769x0 *d);

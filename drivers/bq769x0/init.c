@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Checks that every user needs, limits of current and delays to codes, and the instance itself. */
+#include "x0_internal.h"
+#include <string.h>
+
+unsigned x0_bits(unsigned mask)
+{
+    unsigned n = 0;
+    for (; mask != 0u; mask &= mask - 1u) {
+        n++;
+    }
+    return n;
+}
+
+/* Each group is fed by its own cells: bottom, second and top input carry one (X0-CELL-16). */
+static bool wired(const bq769x0_config *c, unsigned in_use)
+{
+    unsigned fed = 0x4e73u & ((1u << c->inputs) - 1u); /* 0x13 in each group */
+    return (in_use & fed) == fed && in_use >> c->inputs == 0u && x0_bits(in_use) == c->cells;
+}
+
+static bool in_range(const bq769x0_config *c)
+{
+    return c->sensors <= c->inputs / 5u && (c->sensors == 0u || c->thermistor != NULL) &&
+           c->shunt_uohm - 100u <= 100000u - 100u;
+}
+
+/* mA x uohm = nV; in uV without leaving 32 bits. Above 4 kA no code fits. */
+static uint32_t shunt_uv(const bq769x0_config *c, uint32_t ma)
+{
+    uint32_t amp = ma / 1000u, rest = ma % 1000u;
+    return amp > 4000u ? UINT32_MAX : amp * c->shunt_uohm + rest * c->shunt_uohm / 1000u;
+}
+
+bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, const bq_i2c *i2c,
+                  const bq_clock *clock)
+{
+    bq769x0_current_limits current;
+    uint8_t protect3;
+    bq_status st;
+    if (!wired(config, in_use)) {
+        return BQ_E_CELLS;
+    }
+    if (!in_range(config)) {
+        return BQ_E_RANGE;
+    }
+    st = bq769x0_current_codes(shunt_uv(config, config->ocd_ma), config->ocd_delay_ms,
+                               shunt_uv(config, config->scd_ma), config->scd_delay_us, &current);
+    if (st == BQ_OK) {
+        st = bq769x0_protect3(config->ov_delay_s, config->uv_delay_s, &protect3);
+    }
+    if (st != BQ_OK) {
+        return st;
+    }
+    memset(d, 0, sizeof *d);
+    d->config = *config;
+    d->achieved.current = current;
+    d->achieved.protect3 = protect3;
+    d->in_use = in_use;
+    d->groups = config->inputs / 5u;
+    d->address7 = d->achieved.address7 = config->address7;
+    d->crc = d->achieved.crc = config->crc == BQ769X0_CRC_ON;
+    d->gain2_q15 = 32768u;
+    d->die_v25_uv = 1200000u;
+    d->i2c = *i2c;
+    d->clock = *clock;
+    d->now_us = clock->now_us(clock->ctx);
+    return BQ_OK;
+}
+
+bq_status bq769x0_init_known(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c,
+                             const bq_clock *clock)
+{
+    return x0_init(d, config, config->wiring, i2c, clock);
+}

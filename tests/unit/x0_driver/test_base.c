@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The base set: what a small firmware links measures, protects and balances. */
+#include "x0_rig.h"
+#include <string.h>
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static bq_status init_known(void)
+{
+    bq_i2c i2c = hal_sim_x0_i2c(&rig.hal);
+    bq_clock clock = hal_sim_x0_clock(&rig.hal);
+    return bq769x0_init_known(&rig.d, &rig.config, &i2c, &clock);
+}
+
+static bq_status configure(void)
+{
+    return rig_run(bq769x0_begin_configure(&rig.d));
+}
+
+static bq_status measure(void)
+{
+    return rig_run(bq769x0_begin_measure(&rig.d));
+}
+
+/* An awake part with a configuration that says what it is. */
+static void awake(const char *name, unsigned cells)
+{
+    rig_part(name, cells);
+    rig.config.wiring = bq769x0_wiring(rig.config.inputs, (uint8_t)cells);
+    rig.config.address7 = rig.chip.part->address7;
+    rig.config.crc = rig.chip.part->crc ? BQ769X0_CRC_ON : BQ769X0_CRC_OFF;
+    (void)sim_x0_boot(&rig.chip, 3000000);
+    rig_wait_ms(1000);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init_known());
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, bq769x0_begin_measure(&rig.d));
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, bq769x0_begin_clear(&rig.d));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, configure());
+}
+
+static void loop(unsigned ms)
+{
+    for (unsigned t = 0; t < ms; t += 250u) {
+        rig_wait_ms(230);
+        TEST_ASSERT_EQUAL_INT(BQ_OK, measure());
+    }
+}
+
+/* proves: X0-SEQ-15, X0-SEQ-16, X0-SEQ-21, X0-SEQ-22 */
+static void test_every_part_is_configured_and_measured(void)
+{
+    for (int k = 0; k < 15; k++) {
+        const sim_x0_part *part = sim_x0_part_at(k);
+        const bq769x0_achieved *a;
+        uint64_t transactions;
+        awake(part->name, part->cells);
+        (void)sim_x0_set_sense(&rig.chip, -0.010);
+        loop(3000);
+        a = bq769x0_get_achieved(&rig.d);
+        TEST_ASSERT_EQUAL_HEX8(0x8b, rig_reg(0x06));
+        TEST_ASSERT_EQUAL_HEX8(0x5a, rig_reg(0x07));
+        TEST_ASSERT_EQUAL_HEX8(0x50, rig_reg(0x08));
+        TEST_ASSERT_EQUAL_HEX8(a->ov_trip, rig_reg(0x09));
+        TEST_ASSERT_EQUAL_HEX8(a->uv_trip, rig_reg(0x0a));
+        TEST_ASSERT_EQUAL_HEX8(0x19, rig_reg(0x0b));
+        TEST_ASSERT_EQUAL_HEX8(0x18, rig_reg(0x04));
+        TEST_ASSERT_EQUAL_HEX8(0x40, rig_reg(0x05));
+        transactions = rig.hal.transactions;
+        loop(250);
+        TEST_ASSERT_EQUAL_UINT(part->cells == 15 ? 3 : 4, rig.hal.transactions - transactions);
+        TEST_ASSERT_EQUAL_INT(BQ_OK, rig_sample());
+        for (unsigned i = 0; i < part->cells; i++) {
+            TEST_ASSERT_UINT_WITHIN(1, 3600, rig.cells[i].mv);
+            TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, rig.cells[i].quality);
+        }
+        TEST_ASSERT_INT_WITHIN(3, 250, rig.temps[0].dc);
+        TEST_ASSERT_TRUE(rig.sample.current_valid);
+        TEST_ASSERT_INT_WITHIN(2, -2000, rig.sample.current_ma);
+        rig_clean();
+    }
+}
+
+/* proves: X0-SEQ-28, X0-FET-13, X0-BIT-09, X0-SEQ-41 */
+static void test_a_fault_is_reported_kept_and_cleared_on_request(void)
+{
+    awake("bq7693003", 8);
+    loop(3000);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0x01));
+    TEST_ASSERT_TRUE(sim_x0_chg(&rig.chip) && sim_x0_dsg(&rig.chip));
+    TEST_ASSERT_EQUAL_HEX16(1, sim_x0_cb(&rig.chip));
+    (void)sim_x0_set_cell(&rig.chip, 1, 4.3);
+    loop(3500);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, rig_faults());
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0x01)); /* asked for, not done */
+    TEST_ASSERT_FALSE(sim_x0_chg(&rig.chip));
+    TEST_ASSERT_TRUE(sim_x0_dsg(&rig.chip));
+    TEST_ASSERT_EQUAL_HEX16(0, sim_x0_cb(&rig.chip));
+    TEST_ASSERT_EQUAL_HEX8(0x42, rig_reg(0x05)); /* register and pins agree */
+    (void)sim_x0_set_cell(&rig.chip, 1, 3.6);
+    loop(1000);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, rig_faults()); /* latched */
+    (void)sim_x0_set_sense(&rig.chip, -0.150);           /* another one in between is not cleared unseen */
+    rig_wait_ms(1);
+    (void)sim_x0_set_sense(&rig.chip, 0.0);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_run(bq769x0_begin_clear(&rig.d)));
+    loop(250);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_SHORT, rig_faults());
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_run(bq769x0_begin_clear(&rig.d)));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0)); /* not before it was seen to be gone */
+    TEST_ASSERT_FALSE(sim_x0_dsg(&rig.chip));
+    loop(250);
+    TEST_ASSERT_EQUAL_HEX16(0, rig_faults());
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0));
+    TEST_ASSERT_TRUE(sim_x0_chg(&rig.chip) && sim_x0_dsg(&rig.chip));
+    rig_clean();
+}
+
+/* proves: X0-SEQ-48, X0-SEQ-51 */
+static void test_a_disturbed_and_a_dead_bus(void)
+{
+    awake("bq7694003", 15);
+    loop(3000);
+    for (unsigned bit = 0; bit < 700u; bit += 7u) {
+        (void)sim_x0_flip_sda(&rig.chip, (int)bit);
+        loop(250);
+        TEST_ASSERT_EQUAL_INT(BQ_OK, rig_sample());
+        TEST_ASSERT_UINT_WITHIN(1, 3600, rig.cells[14].mv);
+    }
+    sim_x0_bus(&rig.chip)->dead = 2;
+    TEST_ASSERT_TRUE(measure() < 0);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_COMM, rig_faults());
+    TEST_ASSERT_TRUE((rig.cells[0].quality & BQ_Q_VALID) == 0u);
+    sim_x0_bus(&rig.chip)->dead = 0;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, measure());
+    TEST_ASSERT_EQUAL_HEX16(0, rig_faults());
+}
+
+static void test_what_init_refuses(void)
+{
+    bq769x0_config good;
+    awake("bq7693003", 8);
+    good = rig.config;
+    rig.config.wiring = 0;
+    TEST_ASSERT_EQUAL_INT(BQ_E_CELLS, init_known());
+    rig.config.wiring = 0x02f3; /* seven cells */
+    TEST_ASSERT_EQUAL_INT(BQ_E_CELLS, init_known());
+    rig.config = good;
+    rig.config.wiring = (uint16_t)(good.wiring << 1);
+    TEST_ASSERT_EQUAL_INT(BQ_E_CELLS, init_known());
+    rig.config = good;
+    rig.config.shunt_uohm = 99;
+    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
+    rig.config.shunt_uohm = 100001;
+    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
+    rig.config = good;
+    rig.config.sensors = 3;
+    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
+    rig.config = good;
+    rig.config.thermistor = NULL;
+    TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
+    rig.config = good;
+    rig.config.ocd_delay_ms = 7;
+    TEST_ASSERT_EQUAL_INT(BQ_E_NO_CODE, init_known());
+    rig.config = good;
+    rig.config.uv_delay_s = 0;
+    TEST_ASSERT_EQUAL_INT(BQ_E_NO_CODE, init_known());
+    rig.config = good;
+    rig.config.scd_ma = rig.config.ocd_ma;
+    TEST_ASSERT_EQUAL_INT(BQ_E_CONFIG, init_known());
+    TEST_ASSERT_EQUAL_INT(BQ_OK, measure()); /* the instance is as before */
+    rig.config = good;
+    rig.config.ov_mv = 5000;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init_known());
+    TEST_ASSERT_EQUAL_INT(BQ_E_NO_CODE, configure());
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, bq769x0_begin_measure(&rig.d));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_every_part_is_configured_and_measured);
+    RUN_TEST(test_a_fault_is_reported_kept_and_cleared_on_request);
+    RUN_TEST(test_a_disturbed_and_a_dead_bus);
+    RUN_TEST(test_what_init_refuses);
+    return UNITY_END();
+}
