@@ -31,6 +31,23 @@ static void test_boot_waits(void)
 }
 
 /* proves: X0-SEQ-03 */
+static uint32_t moving_clock(void *ctx)
+{
+    hal_sim_x0_advance(ctx, 3000);
+    return hal_sim_x0_clock(ctx).now_us(ctx);
+}
+
+/* A real clock moves between any two readings, also within one call of poll.
+ * proves: X0-SEQ-01, X0-SEQ-02 */
+static void test_boot_waits_with_a_clock_that_moves(void)
+{
+    rig_part("bq7694003", 15);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_init());
+    rig.d.clock.now_us = moving_clock;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_start());
+    TEST_ASSERT_EQUAL_INT(0, (int)sim_x0_misuse(&rig.chip)->count);
+}
+
 static void test_no_device(void)
 {
     rig_part("bq7692003", 5);
@@ -260,6 +277,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_boot_waits);
+    RUN_TEST(test_boot_waits_with_a_clock_that_moves);
     RUN_TEST(test_no_device);
     RUN_TEST(test_warm_start_takes_nothing_for_granted);
     RUN_TEST(test_warm_start_may_keep_the_fets_but_not_after_a_failure);
