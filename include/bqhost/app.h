@@ -7,6 +7,9 @@
  * the contactor line if it has to open, hand the action to the monitor, poll that to its end, and only then
  * write the contactor line if it has to close.
  *
+ * One pass does one of these at most: copy the sample, run the pack step, begin a job; a pass that has more
+ * to do returns 0.
+ *
  * Guarantees, as long as bq_app_step() is called at the latest when its hint has passed:
  * - The pack step runs at least every 1.25 x period_ms, with old data and their age if nothing newer is
  *   there, even if the monitor's jobs never end or its functions return errors for ever. Opening the
@@ -14,7 +17,8 @@
  *       pack.comm_timeout_ms + 1.25 x period_ms
  *   after the conversion start of the last complete valid picture, plus the lateness of the caller.
  * - With a contradicting feedback contact: BQ_PACK_MISMATCH_MS + 1.25 x period_ms.
- * - A request off or sleep opens the contactor in the next bq_app_step().
+ * - A request off or sleep opens the contactor in the next bq_app_step() (the monitor's own FETs with the
+ *   action of the step that follows).
  * - Bring-up is repeated at most once per retry_ms.
  */
 #ifndef BQHOST_APP_H
@@ -90,7 +94,9 @@ typedef struct bq_app {
     uint32_t job_ms, retry_ms, scan_ms; /* job began, last retryable failure, last good scan */
     uint32_t current_age_ms, mismatch_ms;
     int32_t current_ma;
-    bool pausing; /* retry_ms is the begin of a pause */
+    bool pausing;       /* retry_ms is the begin of a pause */
+    uint32_t copied_ms; /* when the picture for the next step was copied */
+    bool copied;        /* and that it was: the step is due */
     bool scan_due, scan_ended, apply_due, step_now;
     bool scanned; /* a scan has succeeded since the monitor is up */
     bool asleep;

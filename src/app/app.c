@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define DEFAULT_RETRY_MS 1000u
+#define FRESH_COPY_MS 1u /* a pass or two */
 
 void bq_app_count(uint32_t *counter)
 {
@@ -193,6 +194,18 @@ static void copy_sample(bq_app *app)
     if (status != BQ_OK && status != BQ_E_STALE) {
         bq_app_count(&app->counters.sample_failures);
     }
+    app->copied = true;
+    app->copied_ms = app->now_ms;
+}
+
+/* The picture for the step that follows in the next pass. What is not requested may open before that. */
+static void prepare_step(bq_app *app)
+{
+    if (app->input.request != BQ_REQUEST_ON && app->line_on) {
+        (void)bq_app_write_contactor(app, false);
+    }
+    app->scan_ended = false; /* one that ends before the step wants another step */
+    copy_sample(app);
 }
 
 /* Opening at once; closing when the monitor has carried out the action (monitor.c). */
@@ -212,13 +225,15 @@ static void step_pack(bq_app *app)
         bq_app_count(&app->counters.late_scans);
     }
     bq_app_count(&app->counters.steps);
-    copy_sample(app);
+    if (app->now_ms - app->copied_ms > FRESH_COPY_MS) {
+        copy_sample(app); /* the caller came late: its ages no longer hold */
+    }
+    app->copied = false;
     read_current(app, app->now_ms - app->step_ms);
     app->input.contactor_mismatch_ms = bq_app_mismatch_ms(app);
     bq_pack_step(&app->pack, &app->sample, &app->input, app->now_ms, &app->action);
     app->step_us = app->last_us;
     app->step_ms = app->now_ms;
-    app->scan_ended = false;
     app->step_now = false;
     write_outputs(app);
 }
@@ -260,8 +275,13 @@ uint32_t bq_app_step(bq_app *app)
     bq_app_poll_job(app);
     bq_app_watch_contactor(app);
     begin_period(app);
-    if (step_due(app)) {
+    if (app->copied) {
         step_pack(app);
+        return 0;
+    }
+    if (step_due(app)) {
+        prepare_step(app);
+        return 0;
     }
     return bq_app_begin_job(app) ? 0u : hint_us(app);
 }

@@ -37,22 +37,27 @@ static bool wanted(const bq_pack *p)
     return p->balancing ? spread > p->config.balance_stop_mv : spread >= p->config.balance_start_mv;
 }
 
-static bool eligible(const bq_pack *p, const bq_cell_reading *c)
+/* The lowest voltage at which a cell is bled. */
+static uint32_t least_mv(const bq_pack *p)
 {
-    return c->mv > (uint32_t)p->summary.cell_min_mv + p->config.balance_stop_mv &&
-           c->mv >= p->config.balance_min_cell_mv;
+    const uint32_t above = (uint32_t)p->summary.cell_min_mv + p->config.balance_stop_mv + 1u;
+
+    return above > p->config.balance_min_cell_mv ? above : p->config.balance_min_cell_mv;
 }
 
-/* The highest eligible cell of first..end - 1 not chosen yet, the lower number of equals; end = none. */
-static uint16_t highest(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end,
-                        const bq_action *a)
+/* The cell of first..end - 1 to choose after `last` (end = none was chosen): the highest from `least` on, the
+ * lower number of equals; end = none is left. */
+static uint16_t next_highest(const bq_sample *s, uint16_t first, uint16_t end, uint32_t least, uint16_t last)
 {
+    const uint32_t below = last == end ? UINT32_MAX : s->cells[last].mv;
+    const bq_cell_reading *c = &s->cells[first];
     uint16_t best = end;
 
-    for (uint16_t i = first; i < end; i++) {
-        if (eligible(p, &s->cells[i]) && !bq_mask_get(a->balance, (uint16_t)(i + 1u)) &&
-            (best == end || s->cells[i].mv > s->cells[best].mv)) {
+    for (uint16_t i = first; i < end; i++, c++) {
+        const uint32_t mv = c->mv;
+        if (mv >= least && mv <= below && (mv != below || i > last)) {
             best = i;
+            least = mv + 1u;
         }
     }
     return best;
@@ -60,14 +65,14 @@ static uint16_t highest(const bq_pack *p, const bq_sample *s, uint16_t first, ui
 
 /* Cells first..end - 1 form one module. */
 static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end,
-                                 bq_action *a)
+                                 uint32_t least, bq_action *a)
 {
     const uint16_t limit = p->config.balance_max_per_module;
-    uint16_t chosen = 0;
+    uint16_t chosen = 0, last = end;
 
     if (limit == 0u || limit >= end - first) {
         for (uint16_t i = first; i < end; i++) {
-            if (eligible(p, &s->cells[i])) {
+            if (s->cells[i].mv >= least) {
                 bq_mask_set(a->balance, (uint16_t)(i + 1u));
                 chosen++;
             }
@@ -75,11 +80,11 @@ static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t 
         return chosen;
     }
     while (chosen < limit) {
-        const uint16_t i = highest(p, s, first, end, a);
-        if (i == end) {
+        last = next_highest(s, first, end, least, last);
+        if (last == end) {
             break;
         }
-        bq_mask_set(a->balance, (uint16_t)(i + 1u));
+        bq_mask_set(a->balance, (uint16_t)(last + 1u));
         chosen++;
     }
     return chosen;
@@ -87,14 +92,22 @@ static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t 
 
 static void choose(bq_pack *p, const bq_sample *s, bq_action *a)
 {
+    const uint32_t least = least_mv(p);
+    uint32_t chosen = 0;
     uint16_t first = 0;
 
-    for (uint16_t i = 1; i <= s->cell_count; i++) {
-        if (i == s->cell_count || s->cells[i].module != s->cells[first].module) {
-            p->summary.balancing = (uint16_t)(p->summary.balancing + choose_in_module(p, s, first, i, a));
-            first = i;
-        }
+    while (first < s->cell_count) {
+        const bq_cell_reading *c = &s->cells[first];
+        const uint32_t module = c->module;
+        uint16_t end = first;
+        do {
+            end++;
+            c++;
+        } while (end < s->cell_count && c->module == module);
+        chosen += choose_in_module(p, s, first, end, least, a);
+        first = end;
     }
+    p->summary.balancing = (uint16_t)chosen;
 }
 
 void bq_pack_balance(bq_pack *p, const bq_picture *v, const bq_pack_input *in, uint32_t dt_ms, bq_action *a)

@@ -13,7 +13,7 @@ typedef struct field {
     int32_t min, max;
 } field;
 
-#define FIELD(name, kind, min, max) { #name, (uint16_t)offsetof(bq_pack_config, name), (kind), (min), (max) }
+#define FIELD(name, kind, min, max) {#name, (uint16_t)offsetof(bq_pack_config, name), (kind), (min), (max)}
 
 static const field fields[] = {
     FIELD(cells, FIELD_U16, 1, (int32_t)BQ_PACK_MAX_CELLS),

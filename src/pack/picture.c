@@ -23,17 +23,17 @@ static void set_seen(uint32_t *mask, uint16_t n)
 /* The configured numbers of everything; cells in the order of their modules, nothing outside these. */
 static bool shape_ok(const bq_pack *p, const bq_sample *s)
 {
-    uint16_t module = 0;
+    uint32_t module = 0;
 
     if (s == NULL || s->cell_count != p->config.cells || s->temp_count != p->config.sensors ||
         s->module_count != p->config.modules) {
         return false;
     }
-    for (uint16_t i = 0; i < s->cell_count; i++) {
-        if (s->cells[i].module < module) {
+    for (const bq_cell_reading *c = s->cells, *end = c + s->cell_count; c != end; c++) {
+        if (c->module < module) {
             return false;
         }
-        module = s->cells[i].module;
+        module = c->module;
     }
     if (module >= s->module_count) {
         return false;
@@ -87,19 +87,6 @@ static void look_at_modules(const bq_pack *p, bq_picture *v)
     }
 }
 
-static void take_cell(bq_pack_summary *y, uint16_t number, uint16_t mv)
-{
-    y->pack_mv += mv;
-    if (y->cell_max == 0u || mv > y->cell_max_mv) {
-        y->cell_max_mv = mv;
-        y->cell_max = number;
-    }
-    if (y->cell_min == 0u || mv < y->cell_min_mv) {
-        y->cell_min_mv = mv;
-        y->cell_min = number;
-    }
-}
-
 static void take_sensor(bq_pack_summary *y, uint16_t number, int16_t dc)
 {
     if (y->temp_max == 0u || dc > y->temp_max_dc) {
@@ -128,31 +115,63 @@ static void blame(bq_picture *v, uint64_t *kind, uint8_t quality, uint16_t m)
     }
 }
 
+/* A reading that is not valid: what it says about its module, and whether its last good value still counts.
+ */
+static bool invalid_cell_counts(const bq_pack *p, bq_picture *v, uint16_t i)
+{
+    const bq_cell_reading *c = &v->s->cells[i];
+
+    blame(v, &v->no_cell, c->quality, c->module);
+    if ((c->quality & BQ_Q_OPEN_WIRE) != 0u && v->open_cell == 0u) {
+        v->open_cell = (uint16_t)(i + 1u);
+    }
+    return seen(p->cell_seen, i) && stands(p, v, c->module);
+}
+
+static bool valid_cell_counts(bq_pack *p, uint64_t untrusted, const bq_cell_reading *c, uint16_t i)
+{
+    if (untrusted != 0u && (untrusted & BIT(c->module)) != 0u) {
+        return false;
+    }
+    if (!p->started) {
+        set_seen(p->cell_seen, i);
+    }
+    return true;
+}
+
+/* The longest loop of a step: what it collects stays in registers. */
 static void look_at_cells(bq_pack *p, bq_picture *v, bq_pack_summary *y)
 {
     const uint64_t untrusted = v->old | v->discarded;
+    const bool plain = untrusted == 0u && p->started;
+    const uint16_t count = v->s->cell_count;
+    const bq_cell_reading *c = v->s->cells;
+    uint32_t sum = 0, highest = 0, lowest = UINT32_MAX, at_highest = 0, at_lowest = 0;
 
-    for (uint16_t i = 0; i < v->s->cell_count; i++) {
-        const bq_cell_reading *c = &v->s->cells[i];
-        const bool valid = (c->quality & BQ_Q_VALID) != 0u;
-        if (valid) {
-            if (untrusted != 0u && (untrusted & BIT(c->module)) != 0u) {
+    for (uint32_t i = 0; i < count; i++, c++) {
+        const uint32_t mv = c->mv;
+        if ((c->quality & BQ_Q_VALID) == 0u) {
+            if (!invalid_cell_counts(p, v, (uint16_t)i)) {
                 continue;
             }
-            if (!p->started) {
-                set_seen(p->cell_seen, i);
-            }
-        } else {
-            blame(v, &v->no_cell, c->quality, c->module);
-            if ((c->quality & BQ_Q_OPEN_WIRE) != 0u && v->open_cell == 0u) {
-                v->open_cell = (uint16_t)(i + 1u);
-            }
-            if (!seen(p->cell_seen, i) || !stands(p, v, c->module)) {
-                continue;
-            }
+        } else if (!plain && !valid_cell_counts(p, untrusted, c, (uint16_t)i)) {
+            continue;
         }
-        take_cell(y, (uint16_t)(i + 1u), c->mv);
+        sum += mv;
+        if (mv > highest || at_highest == 0u) {
+            highest = mv;
+            at_highest = i + 1u;
+        }
+        if (mv < lowest) {
+            lowest = mv;
+            at_lowest = i + 1u;
+        }
     }
+    y->pack_mv = sum;
+    y->cell_max_mv = (uint16_t)highest;
+    y->cell_max = (uint16_t)at_highest;
+    y->cell_min_mv = at_lowest == 0u ? (uint16_t)0 : (uint16_t)lowest;
+    y->cell_min = (uint16_t)at_lowest;
 }
 
 static void look_at_sensors(bq_pack *p, bq_picture *v, bq_pack_summary *y)
