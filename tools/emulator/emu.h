@@ -109,16 +109,21 @@ typedef struct emu_meter {
     uint64_t passes;           /**< how often WFI was executed */
     uint64_t longest_awake;    /**< cycles from waking to the next WFI, the largest since emu_meter_clear() */
     uint64_t longest_awake_ns; /**< when that one began */
+    uint64_t longest_pass;     /**< cycles awake between two visits of the place given to emu_mark() */
+    uint64_t longest_pass_ns;  /**< when that one began */
     uint64_t longest_latency;  /**< cycles from an interrupt pending and enabled to its first instruction */
     unsigned longest_latency_irq;
-    uint64_t longest_isr;   /**< cycles from the first instruction of a handler to the return to thread mode */
-    uint32_t lowest_sp;     /**< of the main stack, since the last reset or emu_meter_clear() */
-    uint32_t exceptions;    /**< entered */
+    uint64_t longest_isr; /**< cycles from the first instruction of a handler to the return to thread mode */
+    uint32_t lowest_sp;   /**< of the main stack, since the last reset or emu_meter_clear() */
+    uint32_t exceptions;  /**< entered */
     uint32_t resets[EMU_CAUSES];
     uint32_t faults; /**< HardFaults entered */
 } emu_meter;
 
 const emu_meter *emu_get_meter(const emu *e);
+/** A place that the image comes by once in each pass of its main loop, for example the address of its step
+ * function from the map file: `longest_pass` is measured there. */
+void emu_mark(emu *e, uint32_t address);
 /** Clears the "longest" and "lowest" entries, for example after start-up. */
 void emu_meter_clear(emu *e);
 

@@ -22,6 +22,9 @@ static uint16_t flags_at(emu_cpu *c, uint32_t address)
         (void)emu_peek(c->e, address, &both, 2);
     }
     f = emu_decode(c->e->chip->m4, both & 0xffffu, both >> 16);
+    if (c->e->mark != 0 && address == c->e->mark) {
+        f |= INSN_MARK;
+    }
     if (kept) {
         uint32_t at = i;
 
@@ -87,6 +90,9 @@ static bool special(emu_cpu *c, uint16_t f)
         c->why = WHY_NO_COPROCESSOR;
         return true;
     }
+    if ((f & INSN_MARK) != 0) {
+        emu_marked(c->e);
+    }
     if ((f & (INSN_STACK | INSN_MASKS)) != 0) {
         c->look_at_stack = true;
         c->e->attention = 0;
@@ -129,6 +135,11 @@ void engine_access(emu_cpu *c, bool write, uint32_t address, unsigned bytes, uin
     emu *e = c->e;
 
     if ((address & (bytes - 1u)) != 0 && strict(c, address)) {
+        uint8_t old[8] = {0};
+
+        if (write && emu_peek(e, address, old, bytes)) {
+            emu_add_fix(e, address, bytes, old); /* the engine stores all the same */
+        }
         engine_fault(c, WHY_UNALIGNED, address);
         return;
     }

@@ -18,6 +18,7 @@ enum emu_insn {
     INSN_STACK = 0x80u,   /**< lowers SP: measure afterwards */
     INSN_STRICT = 0x100u, /**< several words: never unaligned */
     INSN_IN_IT = 0x200u,  /**< conditional by an IT before it: no stop in front of it */
+    INSN_MARK = 0x400u,   /**< the place of emu_mark() */
     INSN_IT_SHIFT = 12u   /**< bits 12..14: an IT instruction that covers so many */
 };
 

@@ -31,16 +31,6 @@ static void mix(uint8_t *to, const uint8_t *old, uint32_t size, bool erase, uint
     }
 }
 
-static void add_fix(emu *e, uint32_t at, uint32_t size, const uint8_t *bytes)
-{
-    emu_fix *f = &e->fix[e->fixes < EMU_FIXES ? e->fixes++ : EMU_FIXES - 1];
-
-    f->at = at;
-    f->size = size;
-    memcpy(f->bytes, bytes, size);
-    emu_kick(e);
-}
-
 static bool trap_springs(emu *e)
 {
     if (e->trap.countdown == 0 || --e->trap.countdown != 0) {
@@ -61,7 +51,7 @@ static void program(emu_periph *p, const uint8_t *result, bool cut)
         mix(bytes, s->old, s->size, false, p->e->trap.seed);
         s->busy_ns = 0; /* settled: the reset must not mix again */
     }
-    add_fix(p->e, s->at, s->size, bytes);
+    emu_add_fix(p->e, s->at, s->size, bytes);
 }
 
 static void erase(emu_periph *p, uint8_t *m, bool cut)
@@ -136,9 +126,13 @@ void flash_key(emu_periph *p, enum flash_lock *lock, uint32_t value, const char 
 
 bool emu_flash_store(emu *e, uint32_t address, uint32_t value, unsigned bytes)
 {
+    uint8_t old[8] = {0};
+
     if (address < e->chip->flash_base) {
         address += e->chip->flash_base; /* through the alias at 0 */
     }
+    (void)emu_peek(e, address, old, bytes);
+    emu_add_fix(e, address, bytes, old); /* the store itself changes nothing; an operation adds its own */
     return e->flash_store(e->flash, address, value, bytes);
 }
 

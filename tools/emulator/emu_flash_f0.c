@@ -82,10 +82,6 @@ static bool f0_store(emu_periph *p, uint32_t address, uint32_t value, unsigned b
     if (old != 0xffffu && (value & 0xffffu) != 0) {
         emu_misuse(p, "SR", "program of %08lx, which is not erased", (unsigned long)address);
         s->sr |= SR_PGERR;
-        result[0] = (uint8_t)old;
-        result[1] = (uint8_t)(old >> 8);
-        p->e->fix[p->e->fixes < EMU_FIXES ? p->e->fixes++ : EMU_FIXES - 1] =
-            (emu_fix){.at = address, .size = 2, .bytes = {result[0], result[1]}};
         drive(p);
         return true;
     }

@@ -78,37 +78,33 @@ static bool can_begin(emu_periph *p)
     return true;
 }
 
-static bool refuse(emu_periph *p, uint32_t flag, uint32_t address, unsigned bytes, const char *why)
+static bool refuse(emu_periph *p, uint32_t flag, uint32_t address, const char *why)
 {
     flash *s = p->state;
-    emu_fix *f = &p->e->fix[p->e->fixes < EMU_FIXES ? p->e->fixes++ : EMU_FIXES - 1];
 
     emu_misuse(p, "SR", "store to %08lx: %s", (unsigned long)address, why);
-    f->at = address;
-    f->size = bytes;
-    (void)emu_peek(p->e, address, f->bytes, bytes);
     s->sr |= flag;
     if ((s->cr & CR_ERRIE) != 0) {
         s->sr |= SR_OPERR;
     }
     drive(p);
-    emu_kick(p->e);
     return true;
 }
 
 static bool f4_store(emu_periph *p, uint32_t address, uint32_t value, unsigned bytes)
 {
     flash *s = p->state;
-    uint8_t result[4], old[4] = {0};
+    uint8_t result[8], old[8] = {0};
+    bool clean = true;
 
     if (s->lock != OPEN || (s->cr & CR_PG) == 0) {
-        return refuse(p, SR_PGSERR, address, bytes, "PG is not set");
+        return refuse(p, SR_PGSERR, address, "PG is not set");
     }
     if (bytes != parallelism(p)) {
-        return refuse(p, SR_PGPERR, address, bytes, "not as wide as PSIZE");
+        return refuse(p, SR_PGPERR, address, "not as wide as PSIZE");
     }
     if ((address & (ROW - 1u)) + bytes > ROW) {
-        return refuse(p, SR_PGAERR, address, bytes, "crosses a row of 128 bits");
+        return refuse(p, SR_PGAERR, address, "crosses a row of 128 bits");
     }
     if (!can_begin(p)) {
         return true;
@@ -117,10 +113,11 @@ static bool f4_store(emu_periph *p, uint32_t address, uint32_t value, unsigned b
     for (unsigned i = 0; i < bytes; i++) {
         uint8_t b = (uint8_t)(value >> (8 * i));
 
-        if ((b & ~old[i]) != 0) {
-            emu_misuse(p, "SR", "program of %08lx, which is not erased", (unsigned long)address);
-        }
+        clean = clean && (b & ~old[i]) == 0;
         result[i] = b & old[i];
+    }
+    if (!clean) {
+        emu_misuse(p, "SR", "program of %08lx, which is not erased", (unsigned long)address);
     }
     flash_begin(p, address, bytes, result, PROGRAM_NS);
     return true;

@@ -116,6 +116,8 @@ struct emu {
     sim_misuse misuse;
     uint32_t misuse_count[SIM_MISUSE_KEPT], misuse_pc[SIM_MISUSE_KEPT];
     emu_meter meter;
+    uint32_t mark; /**< 0 = none */
+    uint64_t marked, marked_ns;
     uint64_t awake_since, awake_since_ns, isr_since;
     void *cpu; /**< emu_cpu.c's own; NULL = none */
 };
@@ -141,11 +143,16 @@ void emu_memory_drop(emu *e);
 /** Host address of n bytes of memory and what kind it is; NULL = not (all) memory. */
 uint8_t *emu_memory_at(const emu *e, uint32_t address, size_t n, emu_region_kind *kind);
 void emu_memory_lose(emu *e); /**< RAM after power on */
+/** What a place holds once the store under way is over. */
+void emu_add_fix(emu *e, uint32_t at, uint32_t size, const uint8_t *bytes);
 void emu_apply_fixes(emu *e);
 
 /* ---- reset ---- */
 void emu_take_reset(emu *e, emu_cause cause);
 bool emu_settle_reset(emu *e); /**< carries out what was asked for; true = there was one */
+
+/* ---- meters ---- */
+void emu_marked(emu *e); /**< the marked place is reached */
 
 /* ---- exceptions ---- */
 void emu_exc_reset(emu *e);

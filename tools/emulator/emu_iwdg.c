@@ -130,7 +130,9 @@ static void iwdg_write(emu_periph *p, uint32_t offset, uint32_t value, unsigned 
         w->rlr = emu_reserved(p, "RLR", value, 0xfffu);
     } else if (offset == WINR && p->at->family == EMU_F0 && may_write(p, 2, "WINR")) {
         w->winr = emu_reserved(p, "WINR", value, 0xfffu);
-        reload(p); /* writing the window also reloads */
+        if (w->running) {
+            refresh(p); /* writing the window also reloads */
+        }
     }
 }
 

@@ -67,6 +67,16 @@ uint8_t *emu_memory_at(const emu *e, uint32_t address, size_t n, emu_region_kind
     return NULL;
 }
 
+void emu_add_fix(emu *e, uint32_t at, uint32_t size, const uint8_t *bytes)
+{
+    emu_fix *f = &e->fix[e->fixes < EMU_FIXES ? e->fixes++ : EMU_FIXES - 1];
+
+    f->at = at;
+    f->size = size;
+    memcpy(f->bytes, bytes, size);
+    emu_kick(e);
+}
+
 void emu_apply_fixes(emu *e)
 {
     for (unsigned i = 0; i < e->fixes; i++) {

@@ -46,6 +46,7 @@ void emu_take_reset(emu *e, emu_cause cause)
     e->meter.lowest_sp = UINT32_MAX;
     e->awake_since = e->cycle;
     e->awake_since_ns = emu_now(e);
+    e->marked_ns = EMU_NEVER;
     e->reset_now = EMU_CAUSES;
     emu_kick(e);
 }

@@ -65,11 +65,14 @@ static bool rests(emu_cpu *c)
         pass_time(e, c->until_ns, false);
         return true;
     }
-    if (c->asleep) {
+    if (c->asleep && !awakes(c)) {
         pass_time(e, c->until_ns, false);
-        if (awakes(c)) {
-            wake(c);
+        if (!awakes(c)) {
+            return true;
         }
+    }
+    if (c->asleep) {
+        wake(c);
         return true;
     }
     if (e->stall_ns > emu_now(e) && pc - c->code_base < 2u * c->code_words) {

@@ -67,6 +67,17 @@ static void test_sleep_without_any_event_lasts_till_the_end(void)
     TEST_ASSERT_EQUAL(1000000000u, emu_now(e));
 }
 
+static void test_what_happens_between_two_runs_wakes_at_once(void)
+{
+    e = START(&emu_f072, &w, code_sleep);
+    HANDLER(e, 16, handler_count);
+    image_run(e, 100000);
+    wr(e, 0xe000e100u, 1);
+    wr(e, 0xe000e200u, 1); /* pended from outside while it sleeps */
+    emu_run_until(e, emu_now(e) + 19u * 125u);
+    TEST_ASSERT_EQUAL(1, emu_register(e, 5));
+}
+
 static void test_under_primask_an_interrupt_wakes_but_is_not_taken(void)
 {
     e = START(&emu_f072, &w, code_masked_sleep);
@@ -166,6 +177,19 @@ static void test_stack_of_a_call(void)
     TEST_ASSERT_EQUAL_HEX32(STACK_TOP - 8 - 64, emu_get_meter(e)->lowest_sp);
 }
 
+static void test_a_pass_is_measured_at_a_marked_place(void)
+{
+    e = START(&emu_f072, &w, code_sleep);
+    HANDLER(e, 15, handler_stack);
+    emu_mark(e, CODE + 4); /* behind WFI */
+    emu_reset(e, EMU_CAUSE_POWER);
+    emu_bus_write(e, 0xe000e014u, 4, 7999);
+    emu_bus_write(e, 0xe000e010u, 4, 7);
+    emu_run_until(e, 5500000);
+    /* adds, b, wfi, then entry, five of the handler, leaving; time asleep does not count */
+    TEST_ASSERT_EQUAL(3 + 16 + 5 + 10, emu_get_meter(e)->longest_pass);
+}
+
 static void test_cycle_counter(void)
 {
     e = START(&emu_f405, &w, code_cyccnt);
@@ -221,6 +245,7 @@ int main(void)
     RUN_TEST(test_it_can_stop_at_every_instruction);
     RUN_TEST(test_sleep_jumps_to_the_next_event);
     RUN_TEST(test_sleep_without_any_event_lasts_till_the_end);
+    RUN_TEST(test_what_happens_between_two_runs_wakes_at_once);
     RUN_TEST(test_under_primask_an_interrupt_wakes_but_is_not_taken);
     RUN_TEST(test_of_two_interrupts_the_lower_number_comes_first);
     RUN_TEST(test_the_more_urgent_interrupt_comes_first);
@@ -228,6 +253,7 @@ int main(void)
     RUN_TEST(test_basepri_holds_back_what_is_not_more_urgent);
     RUN_TEST(test_stack_and_handler_are_measured);
     RUN_TEST(test_stack_of_a_call);
+    RUN_TEST(test_a_pass_is_measured_at_a_marked_place);
     RUN_TEST(test_cycle_counter);
     RUN_TEST(test_svc);
     RUN_TEST(test_it_runs_conditionally);

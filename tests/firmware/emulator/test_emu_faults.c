@@ -77,6 +77,7 @@ static void test_unaligned_access(void)
     CRASH(&emu_f072, code_unaligned);
     TEST_ASSERT_EQUAL_HEX32(CODE + 4, crash_pc());
     CRASH(&emu_f072, code_unaligned_store);
+    TEST_ASSERT_EQUAL_HEX32(0xa5a5a5a5, image_word(e, 0x20000200u)); /* nothing was stored */
     TEST_ASSERT_EQUAL_HEX32(CODE + 6, crash_pc());
     e = (emu_destroy(e), START(&emu_f405, &w, code_unaligned)); /* allowed on Cortex-M4 */
     image_run(e, 10000);
