@@ -30,7 +30,7 @@ static uint8_t ones(uint32_t mask)
 
 static uint8_t flag(bool set, unsigned bit)
 {
-    return set ? (uint8_t)(1u << bit) : (uint8_t)0;
+    return (uint8_t)((set ? 1u : 0u) << bit);
 }
 
 static uint32_t active(const bq_telemetry_source *s)

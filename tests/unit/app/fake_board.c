@@ -122,8 +122,20 @@ static bq_status sample(void *ctx, bq_sample *s)
     return BQ_OK;
 }
 
-static const bq_afe_ops afe_ops = {start,     scan,        poll, sample, apply,
-                                   self_test, go_to_sleep, wake, NULL,   NULL};
+static uint8_t modules_found(void *ctx)
+{
+    return ((fake_board *)ctx)->sequence != 0u ? 1 : 0;
+}
+
+static const bq_link_stats *stats(void *ctx)
+{
+    fake_board *f = ctx;
+
+    return f->has_link ? &f->link : NULL;
+}
+
+static const bq_afe_ops afe_ops = {start,     scan,        poll, sample,        apply,
+                                   self_test, go_to_sleep, wake, modules_found, stats};
 
 /* ---- lines, clock, ammeter ------------------------------------------------------------------- */
 
@@ -157,6 +169,10 @@ static bq_status read_line(void *ctx, bq_line line, bool *level)
 {
     fake_board *f = ctx;
 
+    if (line == BQ_LINE_REQUEST && f->has_request) {
+        *level = f->request;
+        return f->request_status;
+    }
     if (line != BQ_LINE_CONTACTOR_FB || !f->has_feedback) {
         return BQ_E_UNSUPPORTED;
     }
@@ -223,11 +239,32 @@ void fake_init(fake_board *f, uint32_t us)
     f->moved_us = us - 1000000u;
 }
 
-bq_status fake_start(fake_board *f, const bq_app_config *c, bool ammeter)
+bq_afe fake_afe(fake_board *f)
 {
     const bq_afe afe = {&afe_ops, f};
+
+    return afe;
+}
+
+bq_gpio fake_gpio(fake_board *f)
+{
     const bq_gpio gpio = {&gpio_ops, f};
+
+    return gpio;
+}
+
+bq_clock fake_clock(fake_board *f)
+{
     const bq_clock clock = {now_us, f};
+
+    return clock;
+}
+
+bq_status fake_start(fake_board *f, const bq_app_config *c, bool ammeter)
+{
+    const bq_afe afe = fake_afe(f);
+    const bq_gpio gpio = fake_gpio(f);
+    const bq_clock clock = fake_clock(f);
     const bq_ammeter meter = {read_current, f};
 
     return bq_app_init(&f->app, c, &afe, &gpio, &clock, ammeter ? &meter : NULL, f->cells, FAKE_CELLS,

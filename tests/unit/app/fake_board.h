@@ -46,6 +46,10 @@ typedef struct fake_board {
     bq_status line_status, feedback_status;
     uint32_t writes;
     bool has_contactor;
+    bool has_request, request; /* the request line */
+    bq_status request_status;
+    bq_link_stats link; /* NULL is told without `has_link` */
+    bool has_link;
     /* ammeter */
     int32_t ma;
     bq_status ammeter_status;
@@ -62,6 +66,10 @@ bq_app_config fake_config(void);
 void fake_init(fake_board *f, uint32_t us);
 /* bq_app_init with everything of the board; `ammeter` false = none. */
 bq_status fake_start(fake_board *f, const bq_app_config *c, bool ammeter);
+/* Its parts, for a loop elsewhere. */
+bq_afe fake_afe(fake_board *f);
+bq_gpio fake_gpio(fake_board *f);
+bq_clock fake_clock(fake_board *f);
 /* Runs the loop for `ms`, each pass when its hint says (10 us after 0). */
 void fake_run(fake_board *f, uint32_t ms);
 /* Started, on. */

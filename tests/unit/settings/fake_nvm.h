@@ -15,7 +15,7 @@ typedef struct fake_nvm {
     long power_until; /* the operation with this number is torn, no later one happens; negative = never */
     uint8_t torn;     /* what a torn unit or sector is left with: XORed over what it should become */
     bq_status program_status, erase_status, read_status; /* BQ_OK = works */
-    bool sticks; /* programs without an error, but a bit does not take */
+    bool sticks;   /* programs without an error, but a bit does not take */
     long breaches; /* programmed what was not erased, outside, or not a unit */
 } fake_nvm;
 

@@ -76,7 +76,7 @@ static void test_the_form_of_a_record(void)
     TEST_ASSERT_EQUAL_HEX32(1u << 16 | (uint32_t)(len / 4u), word(2));
     TEST_ASSERT_EQUAL_HEX32(bq_settings_layout(&a.settings), word(3));
     TEST_ASSERT_EQUAL_HEX32(0x01020304u, word(4));
-    TEST_ASSERT_EQUAL(100, word(5)); /* period_ms */
+    TEST_ASSERT_EQUAL(100, word(5));                      /* period_ms */
     TEST_ASSERT_EQUAL_HEX32(0xffffff38u, word(5u + 12u)); /* undertemp_dc = -200 */
     TEST_ASSERT_EQUAL_HEX32(0xffffffffu, word(len / 4u - 1u));
     TEST_ASSERT_EQUAL(0, bq_settings_encode(&a.settings, 1, record, len - 1u));
@@ -134,8 +134,8 @@ static void test_tables_leave_no_field_out(void)
         bq769x0_config afe;
     } u;
     const size_t app = 2u * 4u + 1u + 21u * 2u + 2u * 1u + 4u + 1u + 2u + 4u * 4u;
-    const size_t stack = 2u + 5u + 8u * 2u + 2u * 4u + 2u + 4u + 1u + 4u + 2u + 1u;
-    const size_t afe = 7u * 1u + 2u + 4u + 4u * 2u + 2u + 2u * 4u + 4u * 2u + 2u + 3u;
+    const size_t stack = 17u * 1u + 9u * 2u + 3u * 4u;
+    const size_t afe = 13u * 1u + 9u * 2u + 3u * 4u;
 
     TEST_ASSERT_EQUAL(app, covered(&bq_app_config_fields, &u, sizeof u.app));
     TEST_ASSERT_EQUAL(stack, covered(&bq76pl536_config_fields, &u, sizeof u.stack));
@@ -202,13 +202,13 @@ static void test_a_value_out_of_range_refuses_the_whole_record(void)
         size_t word;
         uint32_t good, bad;
     } values[] = {
-        {5u + 2u, 255, 256},                       /* balance_timer_s, 8 bits */
-        {5u + 3u, 65535, 65536},                   /* cells, 16 bits */
-        {5u + 12u, 0xffff8000u, 0xffff7fffu},      /* undertemp_dc, 16 bits signed */
+        {5u + 2u, 255, 256},                  /* balance_timer_s, 8 bits */
+        {5u + 3u, 65535, 65536},              /* cells, 16 bits */
+        {5u + 12u, 0xffff8000u, 0xffff7fffu}, /* undertemp_dc, 16 bits signed */
         {5u + 12u, 32767, 32768},
-        {5u + 27u, 1, 2},                          /* separate_paths */
-        {5u + 28u, 64, 65},                        /* points of the curve */
-        {5u + 33u + 128u + 29u + 61u, 255, 256},   /* cells of the last device: the last value of all */
+        {5u + 27u, 1, 2},                        /* separate_paths */
+        {5u + 28u, 64, 65},                      /* points of the curve */
+        {5u + 33u + 128u + 29u + 61u, 255, 256}, /* cells of the last device: the last value of all */
     };
 
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
