@@ -8,3 +8,5 @@ set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_C_FLAGS_INIT "-mcpu=${BQHOST_CPU} -mthumb -mfloat-abi=soft")
 set(BQHOST_OBJCOPY arm-none-eabi-objcopy)
 set(BQHOST_IMAGE_LINK -nostartfiles --specs=nano.specs)
+# Measured on hv-f405: tables of jumps and values kept over loops cost 700 bytes that nothing here is waiting for.
+set(CMAKE_C_FLAGS_MINSIZEREL_INIT "-fno-jump-tables -fno-tree-loop-im -fno-move-loop-invariants")

@@ -21,6 +21,6 @@ extern uint32_t stm32_data_begin[], stm32_data_end[], stm32_bss_begin[], stm32_b
 extern const uint32_t stm32_data_load[];
 
 /** Second half of stm32_fault(): `frame` is the exception frame. Does not return. */
-void stm32_fault_kept(const uint32_t *frame, uint32_t exception);
+void stm32_fault_kept(const uint32_t *frame, uint32_t exception) __attribute__((used));
 
 #endif

@@ -40,8 +40,8 @@
 #define PLL_FROM_HSI (8u | 0u << 22)
 
 /* Bounds as turns of a loop of about eight cycles at 16 MHz */
-#define TURNS_20_MS 40000u /* a crystal takes some milliseconds, if it starts */
-#define TURNS_1_MS 2000u   /* the PLL takes at most 0.3 ms */
+#define TURNS_100_MS 200000u /* a crystal takes some milliseconds, if it starts */
+#define TURNS_1_MS 2000u     /* the PLL takes at most 0.3 ms */
 
 static bool reaches(volatile uint32_t *reg, uint32_t mask, uint32_t value, uint32_t turns)
 {
@@ -66,7 +66,7 @@ static bool prepare(void)
 static bool crystal_runs(void)
 {
     RCC_CR |= CR_HSEON;
-    if (reaches(&RCC_CR, CR_HSERDY, CR_HSERDY, TURNS_20_MS)) {
+    if (reaches(&RCC_CR, CR_HSERDY, CR_HSERDY, TURNS_100_MS)) {
         return true;
     }
     RCC_CR &= ~CR_HSEON;

@@ -82,32 +82,34 @@ static void arm(unsigned stream, uint32_t memory, size_t len, uint32_t cr)
     d->cr |= STM32_DMA_CR_EN;
 }
 
-/* Chip select high, lines low, SPI and DMA off. */
+/* Chip select high, lines low. */
 static void release(stm32_spi *s)
 {
     stm32_pin_write(s->port, s->cs, true);
     s->released_us = stm32_now_us();
     set_pins(s, PIN_OUTPUT);
-    SPI1->cr1 &= ~CR1_SPE;
-    SPI1->cr2 = 0;
 }
 
-static void end(stm32_spi *s, bq_status result)
+static void end(stm32_spi *s)
 {
     release(s);
+    SPI1->cr1 &= ~CR1_SPE;
+    SPI1->cr2 = 0;
     s->busy = false;
-    s->result = result;
+    s->result = BQ_OK;
 }
 
-/* After an error nothing in the peripheral is trusted. */
+/* After an error nothing in the peripheral is trusted, and nothing of the packet is waited for. */
 static void give_up(stm32_spi *s, bq_status result)
 {
+    release(s);
     (void)stm32_dma_stop(TX_STREAM);
     (void)stm32_dma_stop(RX_STREAM);
-    end(s, result);
     STM32_RCC_APB2RSTR |= STM32_APB2_SPI1;
     STM32_RCC_APB2RSTR &= ~STM32_APB2_SPI1;
     configure(s);
+    s->busy = false;
+    s->result = result;
 }
 
 /* ---- interrupt
@@ -184,7 +186,7 @@ static bq_status spi_poll(void *ctx)
         give_up(s, BQ_E_BUS);
     } else if (s->received && line_idle()) {
         stm32_dsb();
-        end(s, BQ_OK);
+        end(s);
     } else if (stm32_now_us() - s->from_us > s->limit_us) {
         give_up(s, BQ_E_TIMEOUT);
     } else {
