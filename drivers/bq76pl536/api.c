@@ -60,6 +60,9 @@ bq_status bq76pl536_select_gpai(bq76pl536 *d, bool pins)
     bq_status st = begin_in(d, PL_JOB_RECONFIGURE, PL_STATE_READY);
     if (st == BQ_OK) {
         d->gpai_pins = pins;
+        for (unsigned n = 1; n <= d->config.devices; n++) {
+            pl_dev(d, n)->gpai_quality = 0; /* what is there was measured at the other input */
+        }
     }
     return st;
 }

@@ -18,7 +18,7 @@ static uint16_t all_cells(const bq76pl536 *d)
 
 static void fill_module(const bq76pl536 *d, const bq76pl536_device *dev, bq_module_reading *m)
 {
-    m->stack_mv = d->gpai_pins ? 0u : dev->gpai_mv;
+    m->stack_mv = d->gpai_pins || dev->gpai_quality == 0u ? 0u : dev->gpai_mv;
     m->quality = d->gpai_pins ? 0u : dev->gpai_quality;
     m->age_ms = age_ms(d, dev);
     m->faults = dev->faults;

@@ -21,7 +21,7 @@ bq_status pl_job_convert(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
     d->start_ms = d->now_ms;
-    d->start_us = d->now_us;
+    d->convert_us = d->now_us;
     if (raise_conv(d)) {
         SEQ_WAIT(d, f, pl_conversion_us(d));
         if (drdy_low(d)) { /* time-out at twice the computed time; the bursts tell who hangs */
@@ -163,7 +163,8 @@ static bool any_line_high(const bq76pl536 *d)
     return pl_line(d, BQ_LINE_ALERT, &high) && high;
 }
 
-/* A line high that no device explains, seen in two scans so that a flag raised in between is not taken for it (08-09). */
+/* A line high that no device explains, seen in two scans so that a flag raised in between is not taken for it
+ * (08-09). */
 static bool line_unexplained(bq76pl536 *d)
 {
     bool explained = d->found < d->config.devices || !any_line_high(d);
@@ -263,6 +264,7 @@ static bool any_fresh(const bq76pl536 *d)
 static bq_status end_picture(bq76pl536 *d)
 {
     unsigned fresh = 0;
+    d->start_us = d->convert_us;
     for (unsigned n = 1; n <= d->config.devices; n++) {
         fresh += pl_valid(d, n) ? 1u : 0u;
     }

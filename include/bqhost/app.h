@@ -129,7 +129,7 @@ bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *af
  * One pass: polls the running job once, runs what is due, returns at once. The result is the time in
  * microseconds until the next thing is due (0 = call again at once); calling earlier is harmless, calling
  * later costs punctuality, and calls must come at least every 2^31 us. The state of charge, timeouts and
- * periods follow the clock, not the number of calls.
+ * periods follow the clock, not the number of calls. UINT32_MAX if `app` is NULL.
  */
 uint32_t bq_app_step(bq_app *app);
 

@@ -159,7 +159,8 @@ bq_status bq76pl536_start(bq76pl536 *d);
 bq_status bq76pl536_scan(bq76pl536 *d);
 
 /**
- * Carries out an action (PL-SEQ-10): balancing outputs of devices with fresh sound readings and no fault,
+ * Carries out an action (PL-SEQ-10): balancing outputs of devices with fresh sound readings and no flag in
+ * FAULT_STATUS, open wire or fault of the chip itself (an overtemperature alert is left to the caller),
  * each switched on with the full safety timer and proved by read-back and CBT; every other output off,
  * verified. clear_faults clears the comparator flags seen in the last picture (PL-SEQ-08-06), at most once
  * per protection delay. charge_on, discharge_on and sleep are not for this chip. `action` is copied. Ends
@@ -182,7 +183,9 @@ bq_status bq76pl536_self_test(bq76pl536 *d);
  */
 bq_status bq76pl536_wire_test(bq76pl536 *d);
 
-/** Measures the GPAI pins (true) or the brick voltage (false) from the next scan on (PL-GPAI-06). */
+/** Measures the GPAI pins (true) or the brick voltage (false) from the next scan on (PL-GPAI-06); until then
+ * there is no reading of either. Ends with BQ_OK; after an error the choice stands and the scrub carries it
+ * on, device by device. */
 bq_status bq76pl536_select_gpai(bq76pl536 *d, bool pins);
 
 /**

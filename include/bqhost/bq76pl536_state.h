@@ -49,18 +49,18 @@ typedef struct bq76pl536 {
     bq76pl536_diagnosis diagnosis;
     bq76pl536_frame frames[BQ76PL536_FRAMES];
     uint8_t tx[BQ76PL536_BUFFER], rx[BQ76PL536_BUFFER];
-    uint8_t length;     /* of the packet under way */
-    uint8_t data;       /* where the data of the last read begins in rx */
-    uint8_t depth;      /* frames in use */
-    uint8_t io;         /* nothing, transfer or wait under way */
-    uint8_t state;      /* PL_STATE_... */
-    uint8_t found;      /* devices 1..found answer */
-    uint8_t scrub_next; /* device whose configuration is read back next */
-    bool active;        /* outputs may be on: a job must switch them off before it measures */
+    uint8_t length;      /* of the packet under way */
+    uint8_t data;        /* where the data of the last read begins in rx */
+    uint8_t depth;       /* frames in use */
+    uint8_t io;          /* nothing, transfer or wait under way */
+    uint8_t state;       /* PL_STATE_... */
+    uint8_t found;       /* devices 1..found answer */
+    uint8_t scrub_next;  /* device whose configuration is read back next */
+    bool active;         /* outputs may be on: a job must switch them off before it measures */
     uint8_t unexplained; /* scans in a row with a line high that no device explains */
-    uint8_t probes;     /* looks in vain since the last device was lost */
-    uint8_t attempt;    /* of address discovery */
-    uint8_t failed_at;  /* device at which the last discovery pass ended */
+    uint8_t probes;      /* looks in vain since the last device was lost */
+    uint8_t attempt;     /* of address discovery */
+    uint8_t failed_at;   /* device at which the last discovery pass ended */
     uint8_t
         height; /* where the stack ends by the last discovery: nothing above is touched until the next one */
     bool crc;   /* present framing */
@@ -77,6 +77,7 @@ typedef struct bq76pl536 {
     uint32_t now_us, now_ms, rest_us; /* clock as read last; milliseconds since init */
     uint32_t wait_from_us, wait_us;
     uint32_t start_us;                             /* clock at the conversion start of the picture */
+    uint32_t convert_us;                           /* clock at the last conversion start */
     uint32_t start_ms;                             /* the same in instance time */
     uint32_t power_ms;                             /* when bring-up began */
     uint32_t cb_ms;                                /* when the outputs were last switched on */

@@ -6,9 +6,9 @@
  *     help  version  status  cells  faults  counters  self-test  balance [on|off]  reset
  *
  * - Line editing: backspace and delete, left, right, Home and End (also Ctrl-A, Ctrl-E), up and down (also
- *   Ctrl-P, Ctrl-N) through the last BQ_CONSOLE_HISTORY different lines, Ctrl-U clears the line, Ctrl-C
- *   abandons it or ends a running command, Ctrl-L draws it again. CR, LF and CR LF end a line. What does not
- *   fit into BQ_CONSOLE_LINE characters rings the bell. Rows end with CR LF.
+ *   Ctrl-P, Ctrl-N) through the last BQ_CONSOLE_HISTORY lines (the same line again is not kept twice), Ctrl-U
+ * clears the line, Ctrl-C abandons it or ends a running command, Ctrl-L draws it again. CR, LF and CR LF end
+ * a line. What does not fit into BQ_CONSOLE_LINE characters rings the bell. Rows end with CR LF.
  * - Never blocks: a row is made when the one before it has left. The stream takes as much as it likes,
  *   nothing too. Input beyond the running command waits in the stream.
  * - Numbers carry unit and age; a value that is not valid is told as such with the reason.

@@ -105,7 +105,7 @@ typedef enum bq_pack_hold {
 typedef struct bq_pack_config {
     uint16_t cells;                         /**< cells in series, 1..372 */
     uint16_t sensors;                       /**< temperature sensors, 0..128 */
-    uint16_t modules;                       /**< monitor chips, 1..62 */
+    uint16_t modules;                       /**< monitor chips, 1..62, not more than cells */
     uint16_t cell_ov_mv, cell_ov_clear_mv;  /**< trip above, release below; 1000..4500 (PL-VCELL-07), clear <
                                                  trip */
     uint16_t cell_uv_mv, cell_uv_clear_mv;  /**< trip below, release above; 1000..4500, trip < clear <
@@ -113,15 +113,15 @@ typedef struct bq_pack_config {
     int16_t overtemp_dc, overtemp_clear_dc; /**< trip above, release below; -400..1250, clear < trip */
     int16_t undertemp_dc, undertemp_clear_dc;  /**< trip below, release above; -400..1250, trip < clear <
                                                     overtemp_clear_dc */
-    uint16_t imbalance_mv, imbalance_clear_mv; /**< highest minus lowest cell, up to 4500, clear < trip; both
-                                                    0 = off */
+    uint16_t imbalance_mv, imbalance_clear_mv; /**< highest minus lowest cell, up to 4500, 1 <= clear < trip;
+                                                    both 0 = off */
     uint16_t debounce_ms;      /**< a limit must be broken this long, by every sample in it; 0..10000; 0 = at
                                     once */
     uint16_t recover_ms;       /**< ... and kept this long before a fault clears by itself, 100..65535 */
     uint16_t comm_timeout_ms;  /**< oldest value that may still decide; older = outputs off; 20..30000 */
     uint16_t balance_start_mv; /**< spread that starts balancing, up to 1000; 0 = never balance */
     uint16_t balance_stop_mv;  /**< a cell is bled while above the lowest by more than this;
-                                    1..balance_start_mv */
+                                    1..balance_start_mv, 1..1000 with balance_start_mv = 0 */
     uint16_t balance_min_cell_mv; /**< no bleeding of a cell below; 1000..4500 */
     int16_t balance_max_temp_dc;  /**< no bleeding while any sensor is above; -400..1250 */
     int32_t balance_rest_ma;  /**< |current| up to this counts as rest, 0..1000000; bleeding at rest or while

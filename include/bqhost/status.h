@@ -21,15 +21,17 @@ typedef enum bq_status {
     BQ_E_BUSY = -3,        /**< another operation of this instance is still running */
     BQ_E_UNSUPPORTED = -4, /**< the board or build does not offer this */
 
-    /* configuration refused at init; nothing was half-applied */
-    BQ_E_RANGE = -10,   /**< a value outside what the field may hold */
-    BQ_E_NO_CODE = -11, /**< a threshold or delay that no register code expresses exactly */
-    BQ_E_COV_CUV = -12, /**< COV - CUV below 300 mV (PL-COV-12) */
-    BQ_E_DEVICES = -13, /**< more devices than addresses, or none (PL-ADR-01) */
-    BQ_E_CELLS = -14,   /**< a cell count that the part cannot have (PL-GEN-01) */
+    /* configuration refused: at init, with nothing half-applied, or at bring-up where only the chip knows (a
+     * limit its trim cannot hold, cells or a part other than configured); then its outputs are off */
+    BQ_E_RANGE = -10,     /**< a value outside what the field may hold */
+    BQ_E_NO_CODE = -11,   /**< a threshold or delay that no register code expresses: exactly (bq76PL536), or
+                             without being   looser than asked (bq769x0) */
+    BQ_E_COV_CUV = -12,   /**< COV - CUV below 300 mV (PL-COV-12) */
+    BQ_E_DEVICES = -13,   /**< more devices than addresses, or none (PL-ADR-01) */
+    BQ_E_CELLS = -14,     /**< a cell count that the part cannot have (PL-GEN-01) */
     BQ_E_UNLATCHED = -15, /**< delay 0 without explicit permission (PL-ELEC-06, PL-ELEC-07) */
-    BQ_E_CLOCK = -16,   /**< bus clock outside the legal range for this stack (PL-TIM-01, PL-NUM-38) */
-    BQ_E_CONFIG = -17,  /**< fields that contradict each other */
+    BQ_E_CLOCK = -16,     /**< bus clock outside the legal range for this stack (PL-TIM-01, PL-NUM-38) */
+    BQ_E_CONFIG = -17,    /**< fields that contradict each other, or what was found */
 
     /* the bus */
     BQ_E_BUS = -20,         /**< the back-end reported a failed transfer */
@@ -42,7 +44,7 @@ typedef enum bq_status {
 
     /* the chip */
     BQ_E_VERIFY = -30,       /**< read-back differs from what was written */
-    BQ_E_NOT_FOUND = -31,    /**< a device of the configured stack was not found */
+    BQ_E_NOT_FOUND = -31,    /**< a device that is configured was not found; settings: there are none */
     BQ_E_EXTRA_DEVICE = -32, /**< something answers at address 0 after discovery */
     BQ_E_LOCKED_UP = -33,    /**< a conversion never ended (PL-ADC-12) */
     BQ_E_DEFECTIVE = -34,    /**< a chip fault that a reset does not cure */

@@ -12,16 +12,20 @@
  *     +2 cells         every period    u16 lowest, u16 highest cell in mV; u16, u16 their numbers, 0 = none
  *     +3 temperatures  every period    i16 lowest, i16 highest in 0.1 C; i16 state of charge in permille,
  *                                      -1 = not valid; u16 cells balancing
- *     +4 faults        every period    u32 active faults, bit n = bq_pack_fault n; u8 modules found; i8
- * status of the last bring-up; u8 bq_reset_cause, bit 7 = a crash record is there; u8 age of the current in
- * 10 ms, 255 = older or never measured +5 fault event   each event      u8 bq_pack_fault; u8 1 = became
- * active, 0 = cleared; u16 cell; u8 device; u8 sensor (0 = none); i8 wire (-1 = none); u8 running number: a
- * gap = events were lost +6 cell voltages each sample     u8 index; u8 low byte of the sample's sequence; 3 x
- * u16 mV of the cells 3 x index + 1 and following, 0xffff = no valid value or no such cell +7 sample each
- * sample     u32 sequence, u32 clock in us at the conversion start; before its +6 +8 counters      every
- * period    u32 control periods begun; u32 link errors of all kinds +9 boot          at start, 5 s   u8
- * bq_reset_cause; u8 bits 0 crash, 1 crystal failed, 2 image ok; u16 kind and u32 program counter of the
- * crash, 0 without
+ *     +4 faults        every period    u32 active faults, bit n = bq_pack_fault n; u8 modules found;
+ *                                      i8 status of the last bring-up; u8 bq_reset_cause, bit 7 = a crash
+ *                                      record is there; u8 age of the current in 10 ms, 255 = older or
+ *                                      never measured
+ *     +5 fault event   each event      u8 bq_pack_fault; u8 1 = became active, 0 = cleared; u16 cell;
+ *                                      u8 device; u8 sensor (0 = none); i8 wire (-1 = none); u8 running
+ *                                      number: a gap = events were lost
+ *     +6 cell voltages each sample     u8 index; u8 low byte of the sample's sequence; 3 x u16 mV of the
+ *                                      cells 3 x index + 1 and following, 0xffff = no valid value or no
+ *                                      such cell
+ *     +7 sample        each sample     u32 sequence; u32 clock in us at the conversion start; before its +6
+ *     +8 counters      every period    u32 control periods begun; u32 link errors of all kinds
+ *     +9 boot          at start, 5 s   u8 bq_reset_cause; u8 bits 0 crash, 1 crystal failed, 2 image ok;
+ *                                      u16 kind and u32 program counter of the crash, 0 without
  *
  * Rules
  * - Content is made when the controller takes the frame, so it is never older than that. A controller without

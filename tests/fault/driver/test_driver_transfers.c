@@ -167,7 +167,10 @@ static void no_job_hangs_on_a_dead_back_end(void)
 static void a_scan_that_cannot_start_changes_nothing(void)
 {
     rig_up(&r, &c, NULL);
+    uint32_t t_us;
     TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan(&r));
+    rig_sample(&r);
+    t_us = r.sample.t_us;
     rig_advance_ms(&r, 200);
     (void)sim_pl_set_cell(&r.pl, 1, 1, 3.9);
     r.hal.fail_at = 1;
@@ -175,6 +178,7 @@ static void a_scan_that_cannot_start_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_BUS, rig_scan(&r));
     rig_sample(&r);
     TEST_ASSERT_EQUAL_UINT(1, r.sample.sequence);
+    TEST_ASSERT_EQUAL_UINT(t_us, r.sample.t_us); /* the time of this picture, not of the attempt */
     TEST_ASSERT_EQUAL_UINT(3600, r.cells[0].mv);
     TEST_ASSERT_TRUE(r.modules[0].age_ms >= 200);
 }
