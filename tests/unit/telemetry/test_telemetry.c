@@ -6,7 +6,6 @@
 #include <string.h>
 
 #define MOST 4000
-
 static fake_board f;
 static bq_app_config config;
 static bq_telemetry t;
