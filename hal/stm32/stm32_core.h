@@ -21,6 +21,13 @@ static inline void stm32_unlock(uint32_t mask)
     __asm volatile("msr primask, %0" ::"r"(mask) : "memory");
 }
 
+/** The same, and what was pending meanwhile has been served on return: without the barrier a following
+ * stm32_lock() may come first. */
+static inline void stm32_unlock_and_serve(uint32_t mask)
+{
+    __asm volatile("msr primask, %0\n\tisb" ::"r"(mask) : "memory");
+}
+
 static inline void stm32_dsb(void)
 {
     __asm volatile("dsb" ::: "memory");

@@ -50,7 +50,7 @@ void stm32_time_sleep(stm32_time *time, uint32_t us)
             break;
         }
         stm32_wfi();
-        stm32_unlock(mask);
+        stm32_unlock_and_serve(mask);
     }
     STM32_TIM2->dier = 0;
     time->event = false;

@@ -74,7 +74,7 @@ static console_row help(bq_console *c)
                                "faults     every fault since the start|"
                                "counters   of loop and link|"
                                "self-test  of the monitors, while outputs are off|"
-                               "balance    [on or off] allow or forbid it; which cells bleed|"
+                               "balance    (on, off) allow or forbid it; which cells bleed|"
                                "reset      outputs off, then restart]";
     const int32_t row = c->row++;
 
