@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/** @file lv_world.h
+ * What hangs on the pins of lv-f072: a bq7694003 with fifteen cells of 3.6 V, the request line, a console and
+ * a CAN bus with one listener. Written from the pin table in docs/boards.md. */
+#ifndef LV_WORLD_H
+#define LV_WORLD_H
+
+#include "emu.h"
+#include "sim_x0.h"
+
+#define MS 1000000ull
+
+typedef struct lv_world {
+    emu *e;
+    sim_x0 chip;
+    bool request;
+    uint64_t boot_from; /* AFE_BOOT rose; 0 = it is low */
+    char said[4096];    /* by the console, ends with 0 */
+    unsigned length;
+    const char *type; /* typed into the console, 2 ms apart, \r for Return */
+    uint64_t type_ns;
+    uint32_t frames;        /* on CAN, all */
+    emu_can_frame last[16]; /* of each id from 0x100 on */
+    unsigned count[16];
+    bool led;
+} lv_world;
+
+extern lv_world lv;
+
+/** Power on with the image. False: no processor in this build, or no image. */
+bool lv_start(const char *image);
+void lv_end(void);
+/** Runs until `ms` of simulated time since power-on. */
+void lv_run(unsigned ms);
+/** Types a line and runs on for 300 ms. */
+void lv_type(const char *line);
+bool lv_both_fets(void);
+
+#endif
