@@ -117,6 +117,7 @@ void emu_dma_request(emu *e, emu_dma_line line, bool level)
     e->dma_lines ^= 1u << line;
     for (unsigned i = 0; i < e->periphs; i++) {
         if (e->periph[i]->dma != NULL) {
+            emu_touch(e, e->periph[i]);
             e->periph[i]->dma(e->periph[i], line, level);
         }
     }
@@ -161,18 +162,23 @@ static emu_periph *periph_at(emu *e, uint32_t address)
     return NULL;
 }
 
-static bool usable(emu_periph *p, uint32_t offset, const char *what)
+static bool refused(emu_periph *p, uint32_t offset, const char *what, const char *why)
 {
     char reg[12];
 
     snprintf(reg, sizeof reg, "%03lx", (unsigned long)(offset & 0xfffu));
+    emu_misuse(p, reg, "%s %s", what, why);
+    return false;
+}
+
+static bool usable(emu_periph *p, uint32_t offset, const char *what)
+{
+    emu_touch(p->e, p);
     if (!emu_clocked(p->e, p->at)) {
-        emu_misuse(p, reg, "%s without its clock enabled", what);
-        return false;
+        return refused(p, offset, what, "without its clock enabled");
     }
     if (p->at->reset_reg != 0xff && rcc_bit(p->e, p->at->reset_reg, p->at->enable_bit)) {
-        emu_misuse(p, reg, "%s while held in reset", what);
-        return false;
+        return refused(p, offset, what, "while held in reset");
     }
     return true;
 }

@@ -259,6 +259,7 @@ void emu_set_clocks(emu *e, const emu_clocks *c)
     e->base_ns = emu_now(e);
     e->base_cycle = e->cycle;
     e->clock = *c;
+    e->touched = UINT64_MAX;
     for (unsigned i = 0; i < e->periphs; i++) {
         if (e->periph[i]->clock != NULL) {
             e->periph[i]->clock(e->periph[i]);
@@ -329,14 +330,26 @@ static uint64_t periph_next(const emu_periph *p)
     return p->next != NULL ? p->next(p) : EMU_NEVER;
 }
 
-uint64_t emu_next_event(const emu *e)
+/* Only models that something happened to are asked again. */
+static void ask_touched(emu *e)
+{
+    uint64_t touched = e->touched;
+
+    e->touched = 0;
+    for (unsigned i = 0; touched != 0; i++, touched >>= 1) {
+        if ((touched & 1u) != 0 && i < e->periphs) {
+            e->due[i] = periph_next(e->periph[i]);
+        }
+    }
+}
+
+uint64_t emu_next_event(emu *e)
 {
     uint64_t t = world_next(e);
 
+    ask_touched(e);
     for (unsigned i = 0; i < e->periphs; i++) {
-        uint64_t due = periph_next(e->periph[i]);
-
-        t = due < t ? due : t;
+        t = e->due[i] < t ? e->due[i] : t;
     }
     return t;
 }
@@ -352,8 +365,13 @@ static bool run_due(emu *e, uint64_t now)
         any = true;
     }
     for (unsigned i = 0; i < e->periphs; i++) {
-        if (periph_next(e->periph[i]) <= now) {
+        if (e->touched != 0) {
+            ask_touched(e);
+        }
+        if (e->due[i] <= now) {
+            emu_touch(e, e->periph[i]);
             e->periph[i]->run(e->periph[i]);
+            emu_touch(e, e->periph[i]);
             any = true;
         }
     }
@@ -434,6 +452,7 @@ bool emu_uart_in(emu *e, unsigned uart, uint8_t byte)
     emu_periph *p = numbered(e, uart, false);
 
     emu_kick(e);
+    e->touched = UINT64_MAX;
     return p != NULL && emu_clocked(e, p->at) && p->uart_in(p, byte);
 }
 
@@ -442,5 +461,6 @@ bool emu_can_in(emu *e, unsigned can, const emu_can_frame *frame)
     emu_periph *p = numbered(e, can, true);
 
     emu_kick(e);
+    e->touched = UINT64_MAX;
     return p != NULL && emu_clocked(e, p->at) && p->can_in(p, frame);
 }

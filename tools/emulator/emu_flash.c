@@ -81,6 +81,7 @@ void flash_begin(emu_periph *p, uint32_t at, uint32_t size, const uint8_t *resul
     s->size = size;
     s->busy_ns = emu_now(p->e) + ns;
     p->e->flash_ops++;
+    emu_touch(p->e, p);
     cut = trap_springs(p->e);
     if (result != NULL) {
         program(p, result, cut);

@@ -96,6 +96,8 @@ struct emu {
     emu_exceptions exc;
     /* chip */
     emu_periph *periph[EMU_SLOTS];
+    uint64_t due[EMU_SLOTS]; /**< what next() said last */
+    uint64_t touched;        /**< bits of slots whose next() has to be asked again */
     unsigned periphs, last_hit;
     uint8_t irq_lines[EMU_SLOTS]; /**< levels, bit = index */
     const uint32_t *rcc;          /**< registers of RCC, by word */
@@ -123,12 +125,17 @@ struct emu {
 };
 
 /* ---- core ---- */
-void emu_set_now(emu *e, uint64_t ns);            /**< time jumps: asleep or without processor */
-void emu_set_clocks(emu *e, const emu_clocks *c); /**< by RCC */
-uint64_t emu_next_event(const emu *e);            /**< absolute ns */
-uint64_t emu_cycle_of(const emu *e, uint64_t ns); /**< first core cycle at or after a time */
-void emu_events(emu *e);                          /**< runs what is due now */
-static inline void emu_kick(emu *e)               /**< something changed: look before the next instruction */
+void emu_set_now(emu *e, uint64_t ns);                    /**< time jumps: asleep or without processor */
+void emu_set_clocks(emu *e, const emu_clocks *c);         /**< by RCC */
+uint64_t emu_next_event(emu *e);                          /**< absolute ns */
+uint64_t emu_cycle_of(const emu *e, uint64_t ns);         /**< first core cycle at or after a time */
+void emu_events(emu *e);                                  /**< runs what is due now */
+static inline void emu_touch(emu *e, const emu_periph *p) /**< the model's next event may have changed */
+{
+    e->touched |= 1ull << p->slot;
+}
+
+static inline void emu_kick(emu *e) /**< something changed: look before the next instruction */
 {
     e->attention = 0;
 }

@@ -100,8 +100,8 @@ struct emu_periph {
      */
     uint32_t (*read)(emu_periph *p, uint32_t offset, unsigned bytes);
     void (*write)(emu_periph *p, uint32_t offset, uint32_t value, unsigned bytes);
-    /** Time of the model's next event; EMU_NEVER = none. NULL = never has one. Asked again after anything
-     * happened. */
+    /** Time of the model's next event; EMU_NEVER = none. NULL = never has one. Asked again after any
+     * function of this model was called, so it must depend on nothing that changes otherwise. */
     uint64_t (*next)(const emu_periph *p);
     /** Now is at or past next(): do what is due. Called with emu_now() = that time, or a little later when
      * the processor was inside a run of instructions; a model that repeats counts on from its own due time.

@@ -241,6 +241,7 @@ void rcc_reset_bits(emu_periph *p, unsigned reg, uint32_t value)
         if (other->at->reset_reg == reg * 4 && (fresh >> other->at->enable_bit & 1u) != 0 &&
             other->reset != NULL) {
             other->reset(other);
+            emu_touch(p->e, other);
         }
     }
 }

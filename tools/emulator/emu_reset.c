@@ -41,6 +41,7 @@ void emu_take_reset(emu *e, emu_cause cause)
             e->periph[i]->reset(e->periph[i]);
         }
     }
+    e->touched = UINT64_MAX;
     emu_cpu_reset(e);
     e->meter.resets[cause]++;
     e->meter.lowest_sp = UINT32_MAX;
@@ -82,6 +83,7 @@ bool emu_settle_reset(emu *e)
 void emu_set_supply_mv(emu *e, unsigned mv)
 {
     e->supply_mv = mv;
+    e->touched = UINT64_MAX;
     emu_kick(e);
     if (e->powered && mv < POWER_DOWN_MV) {
         e->powered = false; /* everything is reset now; the start waits for the supply */
@@ -95,6 +97,7 @@ void emu_set_supply_mv(emu *e, unsigned mv)
 void emu_set_crystal(emu *e, bool works)
 {
     e->crystal = works;
+    e->touched = UINT64_MAX;
     emu_rcc_crystal(e);
     emu_kick(e);
 }
