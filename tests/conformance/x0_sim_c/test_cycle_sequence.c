@@ -143,6 +143,45 @@ static void test_balancing(void)
     expect_misuse("X0-CB-04");
 }
 
+/* A host that bleeds what stands out: everything it has to know first is there to be read. */
+/* proves: X0-SEQ-38, X0-SEQ-44, X0-AMB-76, X0-SEQ-41 */
+static void test_conditions_of_balancing(void)
+{
+    int code[15], lowest = 16383;
+    unsigned want = 0;
+    ready("bq7694003");
+    for (int i = 0; i < 15; i++) {
+        (void)sim_x0_set_cell(&chip, i + 1, i % 4 == 1 ? 3.68 : 3.6);
+    }
+    (void)sim_x0_set_tdie(&chip, 140); /* nothing of its own happens here, the host has to act */
+    TEST_ASSERT_TRUE(rig_write(0x04, 0x18));
+    rig_wait(2250);
+    TEST_ASSERT_EQUAL_HEX8(0x00, rig_read(0x00) & 0x3f);
+    TEST_ASSERT_EQUAL_HEX8(0x18, rig_read(0x04) & 0x1f);
+    for (int i = 0; i < 15; i++) {
+        code[i] = rig_read16(0x0c + 2 * i);
+        lowest = code[i] < lowest ? code[i] : lowest;
+    }
+    for (int i = 0; i < 15; i++) {
+        want |= code[i] - lowest > 131 ? 1u << i : 0u; /* 50 mV */
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x2222, want);
+    TEST_ASSERT_TRUE(rig_write(0x04, 0x10)); /* the die, 2.25 s each way */
+    rig_wait(2250);
+    TEST_ASSERT_INT_WITHIN(1, 1877, rig_read16(0x2c)); /* 0.717 V: 140 degC, too hot */
+    (void)sim_x0_set_tdie(&chip, 60);
+    rig_wait(2250);
+    TEST_ASSERT_INT_WITHIN(1, 2757, rig_read16(0x2c));
+    TEST_ASSERT_TRUE(rig_write(0x04, 0x18));
+    for (int g = 0; g < 3; g++) {
+        TEST_ASSERT_TRUE(rig_write(0x01 + g, (int)(want >> (5 * g) & 0x1fu)));
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x2222, sim_x0_cb(&chip));
+    rig_wait(2250);
+    TEST_ASSERT_INT_WITHIN(1, 4319, rig_read16(0x2c));
+    expect_clean();
+}
+
 /* proves: X0-SEQ-43 */
 static void test_change_of_the_temperature_source(void)
 {
@@ -215,6 +254,7 @@ int main(void)
     RUN_TEST(test_a_part_that_was_reset_gives_no_results);
     RUN_TEST(test_without_the_counter);
     RUN_TEST(test_balancing);
+    RUN_TEST(test_conditions_of_balancing);
     RUN_TEST(test_change_of_the_temperature_source);
     RUN_TEST(test_calibration_is_the_hosts_matter);
     RUN_TEST(test_one_shot);
