@@ -5,6 +5,7 @@
 #   jobs        parallel jobs
 #   generator   Ninja or Unix Makefiles
 # Installs what is missing when it may (root or password-less sudo, and apt-get); otherwise says what to install and exits 1.
+# want_tools does the same for what only some tests need: cross compilers, emulators, clang. Without them those are skipped.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
@@ -61,6 +62,35 @@ need_tools() {
         exit 1
     fi
     if have ninja; then generator=Ninja; else generator="Unix Makefiles"; fi
+}
+
+arm_works() { # compiler, C library and the python that seals the image
+    have python3 && have arm-none-eabi-gcc &&
+        echo 'int main(void) { return 0; }' | arm-none-eabi-gcc --specs=nano.specs --specs=nosys.specs -x c - -o "$TMPDIR/arm-works" 2>/dev/null
+}
+
+unicorn_works() {
+    echo '#include <unicorn/unicorn.h>' | gcc -fsyntax-only -x c - 2>/dev/null
+}
+
+wished() { # names of the Debian packages that more tests could use
+    arm_works || echo gcc-arm-none-eabi libnewlib-arm-none-eabi python3
+    unicorn_works || echo libunicorn-dev
+    have qemu-system-arm || echo qemu-system-arm
+    have clang-19 && have ld.lld-19 && have llvm-objcopy-19 || echo clang-19 lld-19 llvm-19
+    have riscv64-unknown-elf-gcc || echo gcc-riscv64-unknown-elf
+}
+
+want_tools() { # never fails: what is still missing is the business of the tests that need it
+    local packages package
+    packages=$(wished | tr '\n' ' ')
+    [ -n "$packages" ] || return 0
+    # shellcheck disable=SC2086
+    install_packages $packages && return 0
+    for package in $(wished | tr '\n' ' '); do # one that does not exist here must not keep the others away
+        install_packages "$package" >/dev/null 2>&1 || break
+    done
+    return 0
 }
 
 # A build tree of another generator or another place cannot be used again.

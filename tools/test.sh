@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds everything and runs every test: debug, then under AddressSanitizer and UndefinedBehaviorSanitizer, then a clang
-# build with all warnings as errors, then the requirement trace. Installs what is missing when it may.
-#   tools/test.sh [--quick]     --quick: the debug suite and the trace only
+# Builds everything and runs every test: the firmware images with two compilers, the debug suite (images in the emulator
+# included), the suite under AddressSanitizer and UndefinedBehaviorSanitizer, a clang build with all warnings as errors, the
+# requirement trace. Installs what is missing when it may; what needs a tool that is not there is skipped, and said.
+#   tools/test.sh [--quick]     --quick: nothing is installed but what is needed, and only debug suite and trace
 # Works from any directory, writes only into build/ of the tree. The last line is "N passed, N failed".
 set -u
 quick=0
 case ${1:-} in
 '') ;;
 --quick) quick=1 ;;
-*) sed -n '3,7s/^# \{0,1\}//p' "$0"; [ "$1" = --help ] && exit 0 || exit 2 ;;
+*) sed -n '3,9s/^# \{0,1\}//p' "$0"; [ "$1" = --help ] && exit 0 || exit 2 ;;
 esac
 . "$(dirname "${BASH_SOURCE[0]}")/needs.sh"
 need_tools
+[ $quick = 1 ] || want_tools
 
 passed=0
 failed=0
@@ -32,11 +34,11 @@ build() {
     return $status
 }
 
-# suite PRESET: every test of a build, counted one by one
+# suite PRESET [CTEST_OPTION...]: every test of a build, counted one by one
 suite() {
     say "tests $1"
     local log=$TMPDIR/ctest-$1.log
-    ctest --test-dir "$root/build/$1" -j "$jobs" --output-on-failure --no-tests=error 2>&1 | tee "$log" | grep -v -e '^ *Start ' -e ' Passed '
+    ctest --test-dir "$root/build/$1" -j "$jobs" --output-on-failure --no-tests=error "${@:2}" 2>&1 | tee "$log" | grep -v -e '^ *Start ' -e ' Passed '
     # "100% tests passed, 0 tests failed out of 12"; a suite that did not get so far is one failure
     local line bad all why
     line=$(grep -E '^[0-9]+% tests passed' "$log") || { failed=$((failed + 1)); return; }
@@ -52,18 +54,32 @@ suite() {
     done < <(sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*Skipped.*/\1/p' "$log")
 }
 
+# the images first: the suite runs them in the emulator
+for board in lv-f072 hv-f405; do
+    if [ $quick = 1 ]; then
+        :
+    elif ! arm_works; then
+        skip "image $board: arm-none-eabi-gcc with newlib, or python3, is not installed"
+    else
+        build $board
+        if have clang-19 && have ld.lld-19; then build $board-clang; else skip "image $board with clang: clang-19 or lld-19 is not installed"; fi
+    fi
+done
+
 build dev && suite dev
 
 if [ $quick = 1 ]; then
-    skip "sanitizers and clang: --quick"
+    skip "images, sanitizers and clang: --quick"
 else
     if echo 'int main(void) { return 0; }' | gcc -x c - -fsanitize=address,undefined -o "$TMPDIR/sanitizers" 2>/dev/null &&
         "$TMPDIR/sanitizers" 2>/dev/null; then
-        build asan && suite asan
+        build asan && suite asan -LE image # the emulator translates code as it goes: its own memory is not the firmware's
     else
         skip "AddressSanitizer and UBSan: gcc's sanitizer libraries are missing or do not run here"
     fi
-    if have clang; then
+    if have clang-19; then
+        build clang -DCMAKE_C_COMPILER=clang-19
+    elif have clang; then
         build clang
     else
         skip "clang build: clang is not installed"
