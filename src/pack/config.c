@@ -135,30 +135,30 @@ bq_status bq_pack_config_get(const bq_pack_config *config, const char *name, int
 /* Name of the first field that contradicts another one, or NULL. */
 static const char *contradiction(const bq_pack_config *c)
 {
-    const struct {
-        bool wrong;
-        const char *name;
-    } rules[] = {
-        {c->modules > c->cells, "modules"},
-        {c->cell_ov_clear_mv >= c->cell_ov_mv, "cell_ov_clear_mv"},
-        {c->cell_uv_clear_mv <= c->cell_uv_mv || c->cell_uv_clear_mv >= c->cell_ov_clear_mv,
-         "cell_uv_clear_mv"},
-        {c->overtemp_clear_dc >= c->overtemp_dc, "overtemp_clear_dc"},
-        {c->undertemp_clear_dc <= c->undertemp_dc || c->undertemp_clear_dc >= c->overtemp_clear_dc,
-         "undertemp_clear_dc"},
-        {c->imbalance_mv == 0u ? c->imbalance_clear_mv != 0u
-                               : c->imbalance_clear_mv == 0u || c->imbalance_clear_mv >= c->imbalance_mv,
-         "imbalance_clear_mv"},
-        {c->balance_start_mv != 0u && c->balance_stop_mv > c->balance_start_mv, "balance_stop_mv"},
-        {!bq_soc_config_ok(&c->soc), "soc"},
-    };
-
-    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
-        if (rules[i].wrong) {
-            return rules[i].name;
-        }
+    if (c->modules > c->cells) {
+        return "modules";
     }
-    return NULL;
+    if (c->cell_ov_clear_mv >= c->cell_ov_mv) {
+        return "cell_ov_clear_mv";
+    }
+    if (c->cell_uv_clear_mv <= c->cell_uv_mv || c->cell_uv_clear_mv >= c->cell_ov_clear_mv) {
+        return "cell_uv_clear_mv";
+    }
+    if (c->overtemp_clear_dc >= c->overtemp_dc) {
+        return "overtemp_clear_dc";
+    }
+    if (c->undertemp_clear_dc <= c->undertemp_dc || c->undertemp_clear_dc >= c->overtemp_clear_dc) {
+        return "undertemp_clear_dc";
+    }
+    /* both 0, or a release below the limit */
+    if (c->imbalance_mv == 0u ? c->imbalance_clear_mv != 0u
+                              : c->imbalance_clear_mv == 0u || c->imbalance_clear_mv >= c->imbalance_mv) {
+        return "imbalance_clear_mv";
+    }
+    if (c->balance_start_mv != 0u && c->balance_stop_mv > c->balance_start_mv) {
+        return "balance_stop_mv";
+    }
+    return bq_soc_config_ok(&c->soc) ? NULL : "soc";
 }
 
 bq_status bq_pack_config_validate(const bq_pack_config *config, const char **field_name)

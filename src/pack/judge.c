@@ -8,22 +8,17 @@
 /* Flags a driver can cure: acted on when they last for comm_timeout_ms. BQ_F_COMM is judged by blindness. */
 #define CHIP_SOFT (BQ_F_RESET | BQ_F_LOCKUP | BQ_F_CONFIG | BQ_F_BALANCE | BQ_F_CHAIN)
 
-/* Number, counted from 1, of the k-th cell (sensor) of module m, k from 0; 0 if the module has fewer. */
-static uint16_t cell_of(const bq_sample *s, uint16_t m, uint16_t k)
+/* Number, counted from 1, of the k-th (k from 0) cell or sensor of module m, or of its k-th without a valid
+ * reading; 0 if the module has fewer. */
+static uint16_t place(const bq_sample *s, bool sensor, uint16_t m, uint16_t k, bool bad)
 {
-    for (uint16_t i = 0; i < s->cell_count; i++) {
-        if (s->cells[i].module == m && k-- == 0u) {
-            return (uint16_t)(i + 1u);
-        }
-    }
-    return 0;
-}
+    const uint16_t count = sensor ? s->temp_count : s->cell_count;
 
-static uint8_t sensor_of(const bq_sample *s, uint16_t m, uint16_t k)
-{
-    for (uint16_t i = 0; i < s->temp_count; i++) {
-        if (s->temps[i].module == m && k-- == 0u) {
-            return (uint8_t)(i + 1u);
+    for (uint16_t i = 0; i < count; i++) {
+        const uint8_t module = sensor ? s->temps[i].module : s->cells[i].module;
+        const uint8_t quality = sensor ? s->temps[i].quality : s->cells[i].quality;
+        if (module == m && !(bad && (quality & BQ_Q_VALID) != 0u) && k-- == 0u) {
+            return (uint16_t)(i + 1u);
         }
     }
     return 0;
@@ -39,38 +34,47 @@ static uint16_t lowest_bit(uint32_t mask)
     return n;
 }
 
-static void at_cell(bq_condition *c, const bq_sample *s, uint16_t cell, int32_t value)
+/* A limit that must not be exceeded, by the value of one cell or one sensor. */
+static void judge_high(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
 {
-    c->cell = cell;
-    c->device = cell == 0u ? 0u : (uint8_t)(s->cells[cell - 1u].module + 1u);
+    c->value = value;
+    c->broken = value > trip;
+    c->clear = value < clear;
+}
+
+static void judge_low(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
+{
+    judge_high(c, -value, -trip, -clear);
     c->value = value;
 }
 
-static void at_sensor(bq_condition *c, const bq_sample *s, uint8_t sensor, int32_t value)
+static void at_cell(bq_condition *c, const bq_sample *s, uint16_t cell)
+{
+    c->cell = cell;
+    c->device = (uint8_t)(s->cells[cell - 1u].module + 1u);
+}
+
+static void at_sensor(bq_condition *c, const bq_sample *s, uint8_t sensor)
 {
     c->sensor = sensor;
-    c->device = sensor == 0u ? 0u : (uint8_t)(s->temps[sensor - 1u].module + 1u);
-    c->value = value;
+    c->device = (uint8_t)(s->temps[sensor - 1u].module + 1u);
 }
 
 static void judge_cells(const bq_pack *p, const bq_picture *v, bq_condition *c)
 {
     const bq_pack_config *k = &p->config;
     const bq_pack_summary *y = &p->summary;
-    const uint16_t spread = (uint16_t)(y->cell_max_mv - y->cell_min_mv);
 
     if (y->cell_max == 0u) {
         return;
     }
-    c[BQ_FAULT_CELL_OV].broken = y->cell_max_mv > k->cell_ov_mv;
-    c[BQ_FAULT_CELL_OV].clear = y->cell_max_mv < k->cell_ov_clear_mv;
-    at_cell(&c[BQ_FAULT_CELL_OV], v->s, y->cell_max, y->cell_max_mv);
-    c[BQ_FAULT_CELL_UV].broken = y->cell_min_mv < k->cell_uv_mv;
-    c[BQ_FAULT_CELL_UV].clear = y->cell_min_mv > k->cell_uv_clear_mv;
-    at_cell(&c[BQ_FAULT_CELL_UV], v->s, y->cell_min, y->cell_min_mv);
-    c[BQ_FAULT_IMBALANCE].broken = k->imbalance_mv != 0u && spread > k->imbalance_mv;
-    c[BQ_FAULT_IMBALANCE].clear = spread < k->imbalance_clear_mv;
-    at_cell(&c[BQ_FAULT_IMBALANCE], v->s, y->cell_min, spread);
+    judge_high(&c[BQ_FAULT_CELL_OV], y->cell_max_mv, k->cell_ov_mv, k->cell_ov_clear_mv);
+    at_cell(&c[BQ_FAULT_CELL_OV], v->s, y->cell_max);
+    judge_low(&c[BQ_FAULT_CELL_UV], y->cell_min_mv, k->cell_uv_mv, k->cell_uv_clear_mv);
+    at_cell(&c[BQ_FAULT_CELL_UV], v->s, y->cell_min);
+    judge_high(&c[BQ_FAULT_IMBALANCE], y->cell_max_mv - y->cell_min_mv,
+               k->imbalance_mv != 0u ? k->imbalance_mv : UINT16_MAX, k->imbalance_clear_mv);
+    at_cell(&c[BQ_FAULT_IMBALANCE], v->s, y->cell_min);
 }
 
 static void judge_sensors(const bq_pack *p, const bq_picture *v, bq_condition *c)
@@ -81,12 +85,10 @@ static void judge_sensors(const bq_pack *p, const bq_picture *v, bq_condition *c
     if (y->temp_max == 0u) {
         return;
     }
-    c[BQ_FAULT_OVERTEMP].broken = y->temp_max_dc > k->overtemp_dc;
-    c[BQ_FAULT_OVERTEMP].clear = y->temp_max_dc < k->overtemp_clear_dc;
-    at_sensor(&c[BQ_FAULT_OVERTEMP], v->s, y->temp_max, y->temp_max_dc);
-    c[BQ_FAULT_UNDERTEMP].broken = y->temp_min_dc < k->undertemp_dc;
-    c[BQ_FAULT_UNDERTEMP].clear = y->temp_min_dc > k->undertemp_clear_dc;
-    at_sensor(&c[BQ_FAULT_UNDERTEMP], v->s, y->temp_min, y->temp_min_dc);
+    judge_high(&c[BQ_FAULT_OVERTEMP], y->temp_max_dc, k->overtemp_dc, k->overtemp_clear_dc);
+    at_sensor(&c[BQ_FAULT_OVERTEMP], v->s, y->temp_max);
+    judge_low(&c[BQ_FAULT_UNDERTEMP], y->temp_min_dc, k->undertemp_dc, k->undertemp_clear_dc);
+    at_sensor(&c[BQ_FAULT_UNDERTEMP], v->s, y->temp_min);
 }
 
 /* Takes the first module that shows the cause. False if another one did before. */
@@ -116,37 +118,42 @@ static void judge_chip(const bq_pack *p, uint16_t m, uint16_t flags, bq_conditio
     }
 }
 
+/* A comparator of module m: its flag, and a bit for each cell or sensor it sees. */
+static void judge_comparator(const bq_picture *v, uint16_t m, bool set, uint32_t bits, bq_condition *c,
+                             bool sensor)
+{
+    if ((set || bits != 0u) && first(c, m, v->s->modules[m].faults) && bits != 0u) {
+        const uint16_t n = place(v->s, sensor, m, lowest_bit(bits), false);
+        if (sensor) {
+            c->sensor = (uint8_t)n;
+        } else {
+            c->cell = n;
+        }
+    }
+}
+
 static void judge_comparators(const bq_picture *v, uint16_t m, uint16_t flags, bq_condition *c)
 {
     const bq_module_reading *r = &v->s->modules[m];
 
-    if (((flags & BQ_F_CELL_OV) != 0u || r->cell_ov != 0u) && first(&c[BQ_FAULT_CHIP_CELL_OV], m, flags)) {
-        c[BQ_FAULT_CHIP_CELL_OV].cell = r->cell_ov != 0u ? cell_of(v->s, m, lowest_bit(r->cell_ov)) : 0u;
-    }
-    if (((flags & BQ_F_CELL_UV) != 0u || r->cell_uv != 0u) && first(&c[BQ_FAULT_CHIP_CELL_UV], m, flags)) {
-        c[BQ_FAULT_CHIP_CELL_UV].cell = r->cell_uv != 0u ? cell_of(v->s, m, lowest_bit(r->cell_uv)) : 0u;
-    }
-    if (((flags & BQ_F_OVERTEMP) != 0u || r->sensor_ot != 0u) &&
-        first(&c[BQ_FAULT_CHIP_OVERTEMP], m, flags)) {
-        c[BQ_FAULT_CHIP_OVERTEMP].sensor =
-            r->sensor_ot != 0u ? sensor_of(v->s, m, lowest_bit(r->sensor_ot)) : (uint8_t)0;
-    }
-    if ((flags & (BQ_F_OVERCURRENT | BQ_F_SHORT)) != 0u) {
-        (void)first(&c[BQ_FAULT_OVERCURRENT], m, flags);
-    }
+    judge_comparator(v, m, (flags & BQ_F_CELL_OV) != 0u, r->cell_ov, &c[BQ_FAULT_CHIP_CELL_OV], false);
+    judge_comparator(v, m, (flags & BQ_F_CELL_UV) != 0u, r->cell_uv, &c[BQ_FAULT_CHIP_CELL_UV], false);
+    judge_comparator(v, m, (flags & BQ_F_OVERTEMP) != 0u, r->sensor_ot, &c[BQ_FAULT_CHIP_OVERTEMP], true);
+    judge_comparator(v, m, (flags & (BQ_F_OVERCURRENT | BQ_F_SHORT)) != 0u, 0, &c[BQ_FAULT_OVERCURRENT],
+                     false);
 }
 
 static void judge_wires(const bq_picture *v, uint16_t m, uint16_t flags, bq_condition *c)
 {
-    const bq_module_reading *r = &v->s->modules[m];
+    const uint16_t wires = v->s->modules[m].open_wire;
     bq_condition *w = &c[BQ_FAULT_OPEN_WIRE];
 
-    if ((r->open_wire != 0u || (flags & BQ_F_OPEN_WIRE) != 0u) && first(w, m, flags) && r->open_wire != 0u) {
-        const uint16_t wire = lowest_bit(r->open_wire);
+    if ((wires != 0u || (flags & BQ_F_OPEN_WIRE) != 0u) && first(w, m, flags) && wires != 0u) {
+        const uint16_t wire = lowest_bit(wires);
         w->wire = (int8_t)wire;
-        w->cell = cell_of(v->s, m, wire);
+        w->cell = place(v->s, false, m, wire, false);
         if (w->cell == 0u) { /* the top wire */
-            w->cell = cell_of(v->s, m, (uint16_t)(wire - 1u));
+            w->cell = place(v->s, false, m, (uint16_t)(wire - 1u), false);
         }
     }
 }
@@ -164,48 +171,32 @@ static void judge_modules(const bq_pack *p, const bq_picture *v, bq_condition *c
     }
     if (v->open_cell != 0u && !c[BQ_FAULT_OPEN_WIRE].broken) {
         c[BQ_FAULT_OPEN_WIRE].broken = true;
-        at_cell(&c[BQ_FAULT_OPEN_WIRE], v->s, v->open_cell, 0);
+        at_cell(&c[BQ_FAULT_OPEN_WIRE], v->s, v->open_cell);
     }
 }
 
-/* First cell (sensor) of a module without a valid reading; 0 = none. */
-static uint16_t bad_cell(const bq_sample *s, uint16_t m)
+static int32_t as_value(uint32_t ms)
 {
-    for (uint16_t i = 0; i < s->cell_count; i++) {
-        if (s->cells[i].module == m && (s->cells[i].quality & BQ_Q_VALID) == 0u) {
-            return (uint16_t)(i + 1u);
-        }
-    }
-    return 0;
-}
-
-static uint8_t bad_sensor(const bq_sample *s, uint16_t m)
-{
-    for (uint16_t i = 0; i < s->temp_count; i++) {
-        if (s->temps[i].module == m && (s->temps[i].quality & BQ_Q_VALID) == 0u) {
-            return (uint8_t)(i + 1u);
-        }
-    }
-    return 0;
+    return ms > INT32_MAX ? INT32_MAX : (int32_t)ms;
 }
 
 /* Why a module has been blind for too long: a fault is broken, or one that explains it is active. */
 static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_condition *c)
 {
-    const uint64_t bit = (uint64_t)1 << m;
+    const uint8_t wrong = v->module[m];
     const uint32_t explained = (1ul << BQ_FAULT_OPEN_WIRE) | (1ul << BQ_FAULT_CHIP);
-    const int32_t blind = p->blind_ms[m] > INT32_MAX ? INT32_MAX : (int32_t)p->blind_ms[m];
+    const int32_t blind = as_value(p->blind_ms[m]);
 
-    if (v->s == NULL || ((v->old | v->silent) & bit) != 0u) {
+    if (v->s == NULL || (wrong & (BQ_MODULE_OLD | BQ_MODULE_SILENT)) != 0u) {
         (void)first(&c[BQ_FAULT_COMM_LOSS], m, blind);
         return;
     }
-    if ((v->no_cell & bit) != 0u && (p->faults & explained) == 0u &&
+    if ((wrong & BQ_MODULE_NO_CELL) != 0u && (p->faults & explained) == 0u &&
         first(&c[BQ_FAULT_NO_READING], m, blind)) {
-        c[BQ_FAULT_NO_READING].cell = bad_cell(v->s, m);
+        c[BQ_FAULT_NO_READING].cell = place(v->s, false, m, 0, true);
     }
-    if ((v->no_temp & bit) != 0u && first(&c[BQ_FAULT_SENSOR], m, blind)) {
-        c[BQ_FAULT_SENSOR].sensor = bad_sensor(v->s, m);
+    if ((wrong & BQ_MODULE_NO_TEMP) != 0u && first(&c[BQ_FAULT_SENSOR], m, blind)) {
+        c[BQ_FAULT_SENSOR].sensor = (uint8_t)place(v->s, true, m, 0, true);
     }
 }
 
@@ -216,8 +207,7 @@ static void judge_input(const bq_pack *p, const bq_pack_input *in, bq_condition 
     c[BQ_FAULT_CONFIG].broken = in->monitor == BQ_MONITOR_FAILED;
     c[BQ_FAULT_CONFIG].value = (int32_t)in->monitor_status;
     c[BQ_FAULT_CONTACTOR].broken = in->contactor_mismatch_ms >= BQ_PACK_MISMATCH_MS;
-    c[BQ_FAULT_CONTACTOR].value =
-        in->contactor_mismatch_ms > INT32_MAX ? INT32_MAX : (int32_t)in->contactor_mismatch_ms;
+    c[BQ_FAULT_CONTACTOR].value = as_value(in->contactor_mismatch_ms);
     if (in->apply_status < 0 && !c[BQ_FAULT_CHIP].broken) {
         c[BQ_FAULT_CHIP].broken = true;
         c[BQ_FAULT_CHIP].debounce_ms = p->config.comm_timeout_ms;

@@ -6,15 +6,19 @@
 #include "bqhost/pack.h"
 #include <stddef.h>
 
+/* What is wrong with the readings of one module. */
+#define BQ_MODULE_OLD 0x01u       /* older than comm_timeout_ms */
+#define BQ_MODULE_SILENT 0x02u    /* no answer in the last update */
+#define BQ_MODULE_NO_CELL 0x04u   /* a cell has no valid reading */
+#define BQ_MODULE_NO_TEMP 0x08u   /* a sensor has no valid reading */
+#define BQ_MODULE_DISCARDED 0x10u /* supply lockout: nothing it says counts (PL-UVLO-04) */
+
 /* One look at the sample. Extremes cover values that may still decide; a number of 0 means there is none. */
 typedef struct bq_picture {
-    const bq_sample *s; /* NULL when there is none or its shape is not the configured one */
-    uint64_t old;       /* bit m = readings of module m are older than comm_timeout_ms */
-    uint64_t silent;    /* bit m = module m did not answer in the last update */
-    uint64_t no_cell;   /* bit m = a cell of module m has no valid reading */
-    uint64_t no_temp;   /* bit m = a sensor of module m has no valid reading */
-    uint64_t discarded; /* bit m = supply lockout: nothing that module m says counts (PL-UVLO-04) */
-    uint16_t open_cell; /* first cell next to an open wire */
+    const bq_sample *s;                  /* NULL when there is none or its shape is not the configured one */
+    uint8_t module[BQ_PACK_MAX_MODULES]; /* BQ_MODULE_... */
+    uint16_t open_cell;                  /* first cell next to an open wire */
+    bool untrusted;     /* some module is old or discarded: its valid readings do not count */
     bool fresh;         /* this step brought a new update */
     bool live;          /* the monitor has been brought up: the sample may be judged */
     bool current_known; /* current_ma of the sample is measured and fresh */

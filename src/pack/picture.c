@@ -3,21 +3,9 @@
 #include "pack_internal.h"
 #include <string.h>
 
-#define BIT(m) ((uint64_t)1 << (m))
-
 uint32_t bq_pack_add_ms(uint32_t a, uint32_t b)
 {
     return b > UINT32_MAX - a ? UINT32_MAX : a + b;
-}
-
-static bool seen(const uint32_t *mask, uint16_t n)
-{
-    return ((mask[n / 32u] >> (n % 32u)) & 1u) != 0u;
-}
-
-static void set_seen(uint32_t *mask, uint16_t n)
-{
-    mask[n / 32u] |= (uint32_t)1u << (n % 32u);
 }
 
 /* The configured numbers of everything; cells in the order of their modules, nothing outside these. */
@@ -73,17 +61,17 @@ static void advance_ages(bq_pack *p, const bq_sample *s, const bq_pack_input *in
 static void look_at_modules(const bq_pack *p, bq_picture *v)
 {
     for (uint16_t m = 0; m < v->s->module_count; m++) {
-        const bq_module_reading *r = &v->s->modules[m];
+        const uint16_t flags = v->s->modules[m].faults;
         if (module_age(p, v->s, m) > p->config.comm_timeout_ms) {
-            v->old |= BIT(m);
+            v->module[m] |= BQ_MODULE_OLD;
         }
-        if ((r->faults & BQ_F_COMM) != 0u) {
-            v->silent |= BIT(m);
+        if ((flags & BQ_F_COMM) != 0u) {
+            v->module[m] |= BQ_MODULE_SILENT;
         }
-        if ((r->faults & BQ_F_SUPPLY) != 0u) {
-            v->discarded |= BIT(m);
-            v->no_cell |= BIT(m);
+        if ((flags & BQ_F_SUPPLY) != 0u) {
+            v->module[m] |= BQ_MODULE_DISCARDED | BQ_MODULE_NO_CELL;
         }
+        v->untrusted = v->untrusted || (v->module[m] & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u;
     }
 }
 
@@ -99,62 +87,50 @@ static void take_sensor(bq_pack_summary *y, uint16_t number, int16_t dc)
     }
 }
 
-/* Whether a reading that is not valid may still decide with its last good value. */
-static bool stands(const bq_pack *p, const bq_picture *v, uint16_t m)
+/* Whether reading i of module m may decide: a valid one that is fresh, or the last good value of one that is
+ * not. What is not valid counts against its module, as `kind` where it is not silent. `seen` has a bit for
+ * each reading that has been valid once. */
+static bool decides(bq_pack *p, bq_picture *v, uint32_t *seen, uint16_t i, uint8_t quality, uint8_t m,
+                    uint8_t kind)
 {
-    return p->blind_ms[m] <= p->config.comm_timeout_ms && (v->discarded & BIT(m)) == 0u;
-}
+    const uint32_t bit = (uint32_t)1u << (i % 32u);
 
-/* Counts what kind of invalid reading this is against its module. */
-static void blame(bq_picture *v, uint64_t *kind, uint8_t quality, uint16_t m)
-{
-    if ((quality & BQ_Q_COMM) != 0u) {
-        v->silent |= BIT(m);
-    } else {
-        *kind |= BIT(m);
+    if ((quality & BQ_Q_VALID) != 0u) {
+        if ((v->module[m] & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u) {
+            return false;
+        }
+        if (!p->started) {
+            seen[i / 32u] |= bit;
+        }
+        return true;
     }
+    v->module[m] |= (quality & BQ_Q_COMM) != 0u ? (uint8_t)BQ_MODULE_SILENT : kind;
+    return (seen[i / 32u] & bit) != 0u && p->blind_ms[m] <= p->config.comm_timeout_ms &&
+           (v->module[m] & BQ_MODULE_DISCARDED) == 0u;
 }
 
-/* A reading that is not valid: what it says about its module, and whether its last good value still counts.
- */
-static bool invalid_cell_counts(const bq_pack *p, bq_picture *v, uint16_t i)
+static bool cell_decides(bq_pack *p, bq_picture *v, uint16_t i)
 {
     const bq_cell_reading *c = &v->s->cells[i];
 
-    blame(v, &v->no_cell, c->quality, c->module);
-    if ((c->quality & BQ_Q_OPEN_WIRE) != 0u && v->open_cell == 0u) {
+    if ((c->quality & (BQ_Q_OPEN_WIRE | BQ_Q_VALID)) == BQ_Q_OPEN_WIRE && v->open_cell == 0u) {
         v->open_cell = (uint16_t)(i + 1u);
     }
-    return seen(p->cell_seen, i) && stands(p, v, c->module);
+    return decides(p, v, p->cell_seen, i, c->quality, c->module, BQ_MODULE_NO_CELL);
 }
 
-static bool valid_cell_counts(bq_pack *p, uint64_t untrusted, const bq_cell_reading *c, uint16_t i)
-{
-    if (untrusted != 0u && (untrusted & BIT(c->module)) != 0u) {
-        return false;
-    }
-    if (!p->started) {
-        set_seen(p->cell_seen, i);
-    }
-    return true;
-}
-
-/* The longest loop of a step: what it collects stays in registers. */
+/* The longest loop of a step: what it collects stays in registers, and where nothing is wrong with any module
+ * a valid cell simply counts. */
 static void look_at_cells(bq_pack *p, bq_picture *v, bq_pack_summary *y)
 {
-    const uint64_t untrusted = v->old | v->discarded;
-    const bool plain = untrusted == 0u && p->started;
+    const uint32_t plain = p->started && !v->untrusted ? BQ_Q_VALID : 0u;
     const uint16_t count = v->s->cell_count;
     const bq_cell_reading *c = v->s->cells;
     uint32_t sum = 0, highest = 0, lowest = UINT32_MAX, at_highest = 0, at_lowest = 0;
 
     for (uint32_t i = 0; i < count; i++, c++) {
         const uint32_t mv = c->mv;
-        if ((c->quality & BQ_Q_VALID) == 0u) {
-            if (!invalid_cell_counts(p, v, (uint16_t)i)) {
-                continue;
-            }
-        } else if (!plain && !valid_cell_counts(p, untrusted, c, (uint16_t)i)) {
+        if ((c->quality & plain) == 0u && !cell_decides(p, v, (uint16_t)i)) {
             continue;
         }
         sum += mv;
@@ -176,37 +152,27 @@ static void look_at_cells(bq_pack *p, bq_picture *v, bq_pack_summary *y)
 
 static void look_at_sensors(bq_pack *p, bq_picture *v, bq_pack_summary *y)
 {
-    const uint64_t untrusted = v->old | v->discarded;
-
     for (uint16_t i = 0; i < v->s->temp_count; i++) {
         const bq_temp_reading *t = &v->s->temps[i];
-        const bool valid = (t->quality & BQ_Q_VALID) != 0u;
-        if (valid) {
-            if ((untrusted & BIT(t->module)) != 0u) {
-                continue;
-            }
-            if (!p->started) {
-                set_seen(p->sensor_seen, i);
-            }
-        } else {
-            blame(v, &v->no_temp, t->quality, t->module);
-            if (!seen(p->sensor_seen, i) || !stands(p, v, t->module)) {
-                continue;
-            }
+        if (decides(p, v, p->sensor_seen, i, t->quality, t->module, BQ_MODULE_NO_TEMP)) {
+            take_sensor(y, (uint16_t)(i + 1u), t->dc);
         }
-        take_sensor(y, (uint16_t)(i + 1u), t->dc);
     }
 }
 
 /* A module with only valid readings is as blind as they are old. Complete = that, and fresh, everywhere. */
 static void update_blindness(bq_pack *p, const bq_picture *v, const bq_pack_input *in, bq_pack_summary *y)
 {
-    const uint64_t bad = v->silent | v->no_cell | v->no_temp;
+    uint8_t any = 0;
 
-    y->complete = v->s != NULL && (bad | v->old) == 0u;
+    for (uint16_t m = 0; m < p->config.modules; m++) {
+        any |= v->module[m];
+    }
+    y->complete = v->s != NULL && (any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u;
     p->started = p->started || (y->complete && in->monitor == BQ_MONITOR_UP);
     for (uint16_t m = 0; m < p->config.modules; m++) {
-        if (v->s != NULL && v->live && (bad & BIT(m)) == 0u) {
+        if (v->s != NULL && v->live &&
+            (v->module[m] & (BQ_MODULE_SILENT | BQ_MODULE_NO_CELL | BQ_MODULE_NO_TEMP)) == 0u) {
             const uint32_t age = module_age(p, v->s, m);
             /* until the first complete picture the time since the monitor is up counts */
             p->blind_ms[m] = p->started || age < p->blind_ms[m] ? age : p->blind_ms[m];

@@ -36,9 +36,10 @@ void bq_soc_init(bq_soc *s)
     memset(s, 0, sizeof *s);
 }
 
-static int64_t full(const bq_soc_config *c)
+/* One permille of the capacity, in mA x ms. */
+static int64_t unit(const bq_soc_config *c)
 {
-    return (int64_t)c->capacity_mah * MA_MS_PER_MAH;
+    return (int64_t)c->capacity_mah * (MA_MS_PER_MAH / 1000);
 }
 
 static int64_t limited(int64_t charge, const bq_soc_config *c)
@@ -46,7 +47,7 @@ static int64_t limited(int64_t charge, const bq_soc_config *c)
     if (charge < 0) {
         return 0;
     }
-    return charge > full(c) ? full(c) : charge;
+    return charge > unit(c) * 1000 ? unit(c) * 1000 : charge;
 }
 
 static uint32_t saturating_add(uint32_t a, uint32_t b)
@@ -54,26 +55,27 @@ static uint32_t saturating_add(uint32_t a, uint32_t b)
     return b > UINT32_MAX - a ? UINT32_MAX : a + b;
 }
 
-/* Charge at an open-circuit voltage: linear between two points, held at the ends. */
+/* Charge at an open-circuit voltage: linear between two points in steps of 1/256 permille, held at the ends.
+ */
 static int64_t charge_at(const bq_soc_config *c, uint16_t mv)
 {
     const bq_ocv_point *t = c->ocv;
-    uint16_t i = 1;
-    int32_t rise, above;
+    uint32_t permille_256, rise, above;
+    uint16_t i = 0;
 
-    if (mv <= t[0].mv) {
-        return full(c) / 1000 * t[0].permille;
-    }
     while (i < c->points && t[i].mv < mv) {
         i++;
     }
-    if (i == c->points) {
-        return full(c) / 1000 * t[i - 1u].permille;
+    if (i == 0u || i == c->points) {
+        permille_256 = t[i == 0u ? 0u : i - 1u].permille * 256u;
+    } else {
+        rise = (uint32_t)t[i].mv - t[i - 1u].mv; /* > 0: t[i - 1] lies below mv, t[i] does not */
+        above = (uint32_t)mv - t[i - 1u].mv;
+        permille_256 = t[i - 1u].permille * 256u +
+                       (uint32_t)(t[i].permille - t[i - 1u].permille) * above / rise * 256u +
+                       (uint32_t)(t[i].permille - t[i - 1u].permille) * above % rise * 256u / rise;
     }
-    rise = (int32_t)t[i].mv - (int32_t)t[i - 1u].mv; /* > 0: t[i - 1] lies below mv, t[i] does not */
-    above = (int32_t)mv - (int32_t)t[i - 1u].mv;
-    return full(c) / 1000 * t[i - 1u].permille +
-           full(c) / 1000 * (t[i].permille - t[i - 1u].permille) * above / rise;
+    return unit(c) * permille_256 / 256;
 }
 
 static void count(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, int32_t current_ma)
@@ -107,12 +109,19 @@ void bq_soc_step(bq_soc *s, const bq_soc_config *c, uint32_t dt_ms, bool known, 
     s->last_known = known;
 }
 
+/* Without a 64-bit division, which costs more code than the rest of this file. */
 int16_t bq_soc_permille(const bq_soc *s, const bq_soc_config *c)
 {
-    const int64_t unit = full(c) / 1000;
+    int16_t permille = 0;
 
     if (!s->valid || c->points == 0u) {
         return -1;
     }
-    return (int16_t)((s->charge_ma_ms + unit / 2) / unit);
+    for (int16_t step = 512; step != 0; step = (int16_t)(step / 2)) {
+        /* the highest whose lower edge, half a permille below it, is not above the charge */
+        if (permille + step <= 1000 && unit(c) * (2 * (permille + step) - 1) <= s->charge_ma_ms * 2) {
+            permille = (int16_t)(permille + step);
+        }
+    }
+    return permille;
 }
