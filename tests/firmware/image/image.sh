@@ -21,6 +21,7 @@ limits() { # flash and RAM in bytes
     case $preset in
     lv-f072) echo 43008 8192 ;;
     lv-f072-clang) echo 46080 8192 ;;
+    f072-nvm) echo 16384 4096 ;;
     hv-f405*) echo 49152 20480 ;;
     *) echo 0 0 ;;
     esac
