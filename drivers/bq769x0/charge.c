@@ -40,7 +40,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
         return BQ_E_STALE;
     }
     d->gain2_q15 = 32768u;
-    for (unsigned i = 0; i < d->config.inputs; i++) {
+    for (unsigned i = 0; i < d->inputs; i++) {
         sum += (d->in_use >> i & 1u) != 0u ? x0_cell_mv(d, i) : 0u;
     }
     d->gain2_q15 = gain2;
@@ -48,7 +48,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
         return BQ_E_RANGE; /* X0-AMB-20 */
     }
     d->gain2_q15 = (uint16_t)((stack_mv * 32768u + sum / 2u) / sum);
-    for (unsigned i = 0; i < d->config.inputs; i++) {
+    for (unsigned i = 0; i < d->inputs; i++) {
         d->calibrated_mv[i] = (uint16_t)x0_cell_mv(d, i);
     }
     return BQ_OK;
@@ -56,7 +56,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
 
 bool bq769x0_calibration_due(const bq769x0 *d)
 {
-    for (unsigned i = 0; i < d->config.inputs; i++) {
+    for (unsigned i = 0; i < d->inputs; i++) {
         int32_t moved = (int32_t)x0_cell_mv(d, i) - (int32_t)d->calibrated_mv[i];
         if ((d->in_use >> i & 1u) != 0u && (moved > 100 || moved < -100)) {
             return true;

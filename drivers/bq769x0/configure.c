@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trim and configuration: read, encoded, written, read back (X0-SEQ-11, X0-SEQ-13..19). */
 #include "x0_internal.h"
-#include <string.h>
 
-/* The same registers twice running, for what is read once and used for ever (X0-SEQ-11). */
+/* One or two registers, twice the same running: for what is read once and used for ever (X0-SEQ-11). */
 int x0_job_agree(bq769x0 *d, bq769x0_frame *f)
 {
-    uint8_t *before = d->data + 20;
+    const uint8_t *now = x0_data(d); /* of one register the byte behind it does not change */
     SEQ_BEGIN(f)
     for (f->tries = 0; f->tries < 4u; f->tries++) {
-        memcpy(before, d->data, f->n);
+        f->i = now[0];
+        f->x = now[1];
         SEQ_TRY(1, x0_fetch(d, f->reg, f->n));
-        if (f->tries != 0u && memcmp(d->data, before, f->n) == 0) {
+        if (f->tries != 0u && f->i == now[0] && f->x == now[1]) {
             return BQ_OK;
         }
     }
@@ -23,21 +23,22 @@ int x0_job_agree(bq769x0 *d, bq769x0_frame *f)
  * PROTECT3 stays as found (X0-AMB-88). */
 static bq_status encode(bq769x0 *d, unsigned low)
 {
+    const bq769x0_config *c = &d->config;
     bq769x0_achieved *a = &d->achieved;
-    bq_status st = bq769x0_ov_trip(a->trim, d->config.ov_mv, &a->ov_trip, &a->ov_uv);
-    if (st == BQ_OK) {
-        st = bq769x0_uv_trip(a->trim, d->config.uv_mv, &a->uv_trip, &a->uv_uv);
+    int ov = bq769x0_trip(a->trim, c->ov_mv, false, &a->ov_uv),
+        uv = bq769x0_trip(a->trim, c->uv_mv, true, &a->uv_uv);
+    if ((ov | uv) < 0) { /* one of them is -1 */
+        return BQ_E_NO_CODE;
     }
-    a->protect3 = (uint8_t)((a->protect3 & 0xf0u) | low);
-    d->want[BQ769X0_SYS_CTRL1] =
-        (uint8_t)(BQ769X0_CTRL1_ADC_EN | (d->config.sensors != 0u ? BQ769X0_CTRL1_TEMP_SEL : 0u));
+    a->ov_trip = d->want[BQ769X0_OV_TRIP] = (uint8_t)ov;
+    a->uv_trip = d->want[BQ769X0_UV_TRIP] = (uint8_t)uv;
+    a->protect3 = d->want[BQ769X0_PROTECT3] = (uint8_t)((a->protect3 & 0xf0u) | low);
     d->want[BQ769X0_PROTECT1] = a->current.protect1;
     d->want[BQ769X0_PROTECT2] = a->current.protect2;
-    d->want[BQ769X0_PROTECT3] = a->protect3;
-    d->want[BQ769X0_OV_TRIP] = a->ov_trip;
-    d->want[BQ769X0_UV_TRIP] = a->uv_trip;
     d->want[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
-    return st;
+    d->want[BQ769X0_SYS_CTRL1] =
+        c->sensors != 0u ? BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL : BQ769X0_CTRL1_ADC_EN;
+    return BQ_OK;
 }
 
 /* FETs as in d->want, balancing and delay bypass off; then the limits; then converter and counter. SYS_STAT
@@ -46,13 +47,12 @@ int x0_job_configure(bq769x0 *d, bq769x0_frame *f)
 {
     bq_status st;
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN1, 2));
-    f->x = d->data[0];
-    f->i = d->data[1];
-    SEQ_TRY(2, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN2, 1));
-    d->achieved.trim = bq769x0_trim_from(f->x, f->i, d->data[0]);
+    SEQ_TRY(1, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN2, 1));
+    f->x = d->answer;
+    SEQ_TRY(2, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN1, 2));
+    d->achieved.trim = bq769x0_trim_from(d->answer, x0_data(d)[1], f->x);
     SEQ_TRY(3, x0_push(d, x0_job_agree, BQ769X0_PROTECT3, 1));
-    st = encode(d, d->data[0] & 0x0fu);
+    st = encode(d, d->answer & 0x0fu);
     if (st != BQ_OK) {
         return st;
     }

@@ -47,17 +47,16 @@ static bool over(bool before, int dc, int limit_dc)
     return dc > (before ? limit_dc - HYSTERESIS_DC : limit_dc);
 }
 
-/* The hottest sensor; `ts` = TS registers as read. What no working sensor gives counts as too hot to balance,
+/* The hottest of the sensors. What no working sensor gives counts as too hot to balance,
  * but not as a temperature. */
-static void judge(bq769x0 *d, const uint8_t *ts)
+static void judge(bq769x0 *d, const uint16_t *codes)
 {
     const bq769x0_config *c = &d->config;
     unsigned lowest = 0x3fff;
-    for (unsigned i = 0; i < d->groups; i++, ts += 2) {
-        unsigned code = ((unsigned)ts[0] << 8 | ts[1]) & 0x3fffu;
-        lowest = code < lowest ? code : lowest;
+    for (unsigned i = 0; i < d->groups; i++) {
+        lowest = codes[i] < lowest ? codes[i] : lowest;
     }
-    d->die_dc = bq769x0_die_dc((uint16_t)lowest, d->die_v25_uv);
+    d->die_dc = bq769x0_die_dc((uint16_t)lowest, d->config.die_v25_uv);
     d->die_looked = true;
     d->die_known = d->die_dc > -500 && d->die_dc < 1750;
     d->die_ms = d->now_ms;
@@ -67,13 +66,13 @@ static void judge(bq769x0 *d, const uint8_t *ts)
         d->die_known && over(d->die_fault, d->die_dc, c->die_fault_dc != 0 ? c->die_fault_dc : FAULT_DC);
 }
 
-/* Right after a picture, while d->data still holds it. */
+/* Right after a picture. */
 void x0_die_after_picture(bq769x0 *d)
 {
     bool of_the_die =
         d->config.sensors == 0u ? d->temp_valid : d->die_phase == DIE_LOOK && settled(d) && d->valid;
     if (of_the_die) {
-        judge(d, d->data + X0_TAIL + 2u);
+        judge(d, &d->code[d->temp_held ? X0_DIE : X0_TS]);
         if (d->die_phase == DIE_LOOK) {
             d->die_phase = DIE_RETURN;
         }

@@ -27,7 +27,7 @@ void x0_wait(bq769x0 *d, uint32_t us)
 
 bq769x0_frame *x0_push(bq769x0 *d, bq769x0_job job, unsigned reg, unsigned n)
 {
-    bq769x0_frame *f = &d->frames[d->depth++];
+    bq769x0_frame *f = ++d->top;
     memset(f, 0, sizeof *f);
     f->job = job;
     f->reg = (uint8_t)reg;
@@ -42,7 +42,7 @@ void x0_run(bq769x0 *d, bq769x0_job job)
 
 bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job)
 {
-    if (d->depth != 0u) {
+    if (d->top->job != NULL) {
         return BQ_E_BUSY;
     }
     if (d->state < least_state) {
@@ -54,10 +54,11 @@ bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job)
     return BQ_OK;
 }
 
-/* One step of the job on top. A failure ends its parents too, up to one that looks at results itself. */
+/* One step of the job on top. A failure ends its parents too, up to one that looks at results itself; below
+ * the first job lies a frame without one that does. */
 static void step(bq769x0 *d)
 {
-    bq769x0_frame *f = &d->frames[d->depth - 1u];
+    bq769x0_frame *f = d->top;
     int next = f->job(d, f);
     if (next > 0) {
         f->at = (uint8_t)(next & ~X0_CATCHES);
@@ -66,12 +67,12 @@ static void step(bq769x0 *d)
     }
     d->result = (bq_status)next;
     do {
-        d->depth--;
         f--;
-    } while (next != BQ_OK && d->depth != 0u && !f->catches);
+    } while (next != BQ_OK && !f->catches);
+    d->top = f;
 }
 
-/* True while the transfer goes on. */
+/* Whether the transfer under way goes on. */
 static bool on_the_bus(bq769x0 *d)
 {
     d->transfer = d->i2c.ops->poll(d->i2c.ctx);
@@ -82,24 +83,33 @@ static bool on_the_bus(bq769x0 *d)
         d->transfer = BQ_E_TIMEOUT;
     }
     d->due_us = d->now_us;
-    d->busy = false;
     return false;
+}
+
+/* Steps until a transfer goes out, a time must pass, or all is done; tells how long to wait. */
+static uint32_t go_on(bq769x0 *d)
+{
+    while (d->top->job != NULL && !d->busy) {
+        int32_t left = (int32_t)(d->due_us - d->now_us);
+        if (left > 0) {
+            return (uint32_t)left;
+        }
+        step(d);
+    }
+    return 0;
 }
 
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us)
 {
-    int32_t left = 0;
+    uint32_t left;
     if (d == NULL) {
         return BQ_E_ARG;
     }
     x0_tick(d);
-    if (!d->busy || !on_the_bus(d)) {
-        while (d->depth != 0u && !d->busy && (left = (int32_t)(d->due_us - d->now_us)) <= 0) {
-            step(d);
-        }
-    }
+    d->busy = d->busy && on_the_bus(d);
+    left = go_on(d);
     if (wait_us != NULL) {
-        *wait_us = d->busy || left < 0 ? 0u : (uint32_t)left;
+        *wait_us = left;
     }
-    return d->depth != 0u ? BQ_PENDING : d->result;
+    return d->top->job != NULL ? BQ_PENDING : d->result;
 }

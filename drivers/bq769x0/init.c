@@ -25,13 +25,6 @@ static bool in_range(const bq769x0_config *c)
            c->shunt_uohm - 100u <= 100000u - 100u;
 }
 
-/* mA x uohm = nV; in uV without leaving 32 bits. Above 4 kA no code fits. */
-static uint32_t shunt_uv(const bq769x0_config *c, uint32_t ma)
-{
-    uint32_t amp = ma / 1000u, rest = ma % 1000u;
-    return amp > 4000u ? UINT32_MAX : amp * c->shunt_uohm + rest * c->shunt_uohm / 1000u;
-}
-
 bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, const bq_i2c *i2c,
                   const bq_clock *clock)
 {
@@ -44,8 +37,9 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     if (!in_range(config)) {
         return BQ_E_RANGE;
     }
-    st = bq769x0_current_codes(shunt_uv(config, config->ocd_ma), config->ocd_delay_ms,
-                               shunt_uv(config, config->scd_ma), config->scd_delay_us, &current);
+    st = bq769x0_current_codes(bq769x0_shunt_uv(config->ocd_ma, config->shunt_uohm), config->ocd_delay_ms,
+                               bq769x0_shunt_uv(config->scd_ma, config->shunt_uohm), config->scd_delay_us,
+                               &current);
     if (st == BQ_OK) {
         st = bq769x0_protect3(config->ov_delay_s, config->uv_delay_s, &protect3);
     }
@@ -54,14 +48,19 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     }
     memset(d, 0, sizeof *d);
     d->config = *config;
+    if (config->die_v25_uv == 0u) {
+        d->config.die_v25_uv = 1200000u;
+    }
     d->achieved.current = current;
     d->achieved.protect3 = protect3;
     d->in_use = in_use;
+    d->inputs = config->inputs;
     d->groups = config->inputs / 5u;
     d->address7 = d->achieved.address7 = config->address7;
     d->crc = d->achieved.crc = config->crc == BQ769X0_CRC_ON;
     d->gain2_q15 = 32768u;
-    d->die_v25_uv = 1200000u;
+    d->top = d->frames;
+    d->top->catches = true; /* no job: the end of every failure */
     d->i2c = *i2c;
     d->clock = *clock;
     d->now_us = clock->now_us(clock->ctx);

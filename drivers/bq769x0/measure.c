@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The measurement cycle: status, all measurements, clearing of the fetched result (X0-SEQ-21..23). */
 #include "x0_internal.h"
-#include <string.h>
-
-static uint16_t pair(const uint8_t *p)
-{
-    return (uint16_t)((unsigned)p[0] << 8 | p[1]);
-}
 
 void x0_invalidate(bq769x0 *d, uint16_t fault)
 {
@@ -14,29 +8,37 @@ void x0_invalidate(bq769x0 *d, uint16_t fault)
     d->faults |= fault;
 }
 
-/* BAT is a quarter of the sum of all codes of the same scan, within 1 (X0-BAT-05). A block read across a
- * publication fails this too: it is then read again. */
-static bool plausible(uint32_t sum, uint32_t bat)
+/* `n` codes from x0_data() to d->code. Upper bits of cells and temperatures are no data (X0-BIT-16). While
+ * the temperatures are held, those of the other source go behind all others. */
+static void take_codes(bq769x0 *d, unsigned first, unsigned n)
 {
-    return sum != 0u && bat + 1u - sum / 4u <= 2u;
+    const uint8_t *p = x0_data(d);
+    for (n += first; first < n; first++, p += 2) {
+        unsigned code = (unsigned)p[0] << 8 | p[1], at = first;
+        if (first != X0_BAT && first != X0_CC) {
+            code &= 0x3fffu;
+        }
+        if (d->temp_held && first >= X0_TS && first < X0_CC) {
+            at += X0_DIE - X0_TS;
+        }
+        d->code[at] = (uint16_t)code;
+    }
 }
 
-/* d->data holds the cells, and from X0_TAIL on BAT and the temperatures. */
+/* BAT is a quarter of the sum of all codes of the same scan, within 1 (X0-BAT-05). A block read across a
+ * publication fails this too: it is then read again. */
+static bool plausible(const bq769x0 *d)
+{
+    uint32_t sum = 0;
+    for (unsigned i = 0; i < d->inputs; i++) {
+        sum += d->code[i];
+    }
+    return sum != 0u && d->code[X0_BAT] + 1u - sum / 4u <= 2u;
+}
+
 static void take_picture(bq769x0 *d)
 {
-    unsigned registers = d->temp_held ? X0_TS : X0_TS + 3u;
-    uint32_t sum = 0;
-    for (unsigned i = 0; i < registers; i++) {
-        unsigned code = pair(d->data + 2u * i);
-        if (i != X0_BAT) {
-            code &= 0x3fffu; /* X0-BIT-16 */
-        }
-        if (i < d->config.inputs) {
-            sum += code;
-        }
-        d->code[i] = (uint16_t)code;
-    }
-    d->valid = plausible(sum, d->code[X0_BAT]);
+    d->valid = plausible(d);
     if (!d->valid) {
         x0_bump(&d->stats.implausible);
     }
@@ -53,9 +55,9 @@ static void take_picture(bq769x0 *d)
 }
 
 /* One fetched result of the coulomb counter. */
-void x0_take_current(bq769x0 *d, const uint8_t *cc)
+void x0_take_current(bq769x0 *d, uint16_t raw)
 {
-    int code = (int16_t)pair(cc);
+    int code = (int16_t)raw;
     if (d->config.invert_current) {
         code = code == INT16_MIN ? INT16_MAX : -code;
     }
@@ -70,20 +72,21 @@ int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     for (f->tries = 0; f->tries < 2u; f->tries++) {
-        f->n = 40;
-        if (d->config.inputs != BQ769X0_INPUTS) {
+        f->n = 20;
+        if (d->inputs != BQ769X0_INPUTS) {
             SEQ_TRY(1, x0_fetch(d, BQ769X0_BAT_HI, 10));
-            memcpy(d->data + X0_TAIL, d->data, 10);
-            f->n = (uint8_t)(2u * d->config.inputs);
+            take_codes(d, X0_BAT, 5);
+            f->n = d->inputs;
         }
-        SEQ_TRY(2, x0_fetch(d, BQ769X0_VC1_HI, f->n));
+        SEQ_TRY(2, x0_fetch(d, BQ769X0_VC1_HI, 2u * f->n));
+        take_codes(d, 0, f->n);
         take_picture(d);
         if (d->valid) {
             break;
         }
     }
     if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
-        x0_take_current(d, d->data + X0_CC);
+        x0_take_current(d, d->code[X0_CC]);
     }
     return BQ_OK;
     SEQ_END;
@@ -96,7 +99,7 @@ int x0_job_measure(bq769x0 *d, bq769x0_frame *f)
     d->faults = 0;
     SEQ_CALL(1, x0_fetch(d, BQ769X0_SYS_STAT, 1));
     if (d->result == BQ_OK) {
-        d->stat = d->data[0] & BQ769X0_STAT_CLEAR;
+        d->stat = d->answer & BQ769X0_STAT_CLEAR;
         if (x0_reached(d, d->data_ms)) {
             d->data_ms = d->now_ms; /* for ever reached */
             SEQ_CALL(2, x0_run(d, x0_job_picture));
@@ -129,7 +132,7 @@ bq_status bq769x0_begin_clear(bq769x0 *d)
     bq_status st = x0_begin(d, X0_STATE_READY, x0_job_transfer);
     if (st == BQ_OK) {
         d->want[0] = d->stat & BQ769X0_STAT_FAULTS;
-        d->frames[0].n = 1; /* of register SYS_STAT */
+        d->top->n = 1; /* of register SYS_STAT */
     }
     return st;
 }

@@ -7,7 +7,7 @@
 static uint32_t print_of(const bq769x0 *d)
 {
     uint32_t print = 0;
-    for (unsigned i = 0; i < sizeof d->code / sizeof d->code[0]; i++) {
+    for (unsigned i = 0; i < X0_CC; i++) {
         print = (print ^ d->code[i]) * 16777619u; /* FNV-1a */
     }
     return print;
@@ -113,7 +113,7 @@ int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
             SEQ_YIELD(2, x0_wait(d, 260000u));
         }
         SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
-        d->want[0] = d->data[0] & BQ769X0_STAT_CC_READY;
+        d->want[0] = d->answer & BQ769X0_STAT_CC_READY;
         if (d->want[0] != 0u) {
             SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
         }
@@ -124,9 +124,9 @@ int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
         for (f->i = 0; f->i < 4u; f->i++) { /* 260, 375, 490, 605 ms */
             SEQ_YIELD(6, x0_wait(d, f->i == 0u ? 260000u : 115000u));
             SEQ_TRY(7, x0_fetch(d, BQ769X0_SYS_STAT, 1));
-            if ((d->data[0] & BQ769X0_STAT_CC_READY) != 0u) {
+            if ((d->answer & BQ769X0_STAT_CC_READY) != 0u) {
                 SEQ_TRY(8, x0_fetch(d, BQ769X0_CC_HI, 2));
-                x0_take_current(d, d->data);
+                x0_take_current(d, (uint16_t)((unsigned)d->answer << 8 | x0_data(d)[1]));
                 x0_count_charge(d);
                 d->want[0] = BQ769X0_STAT_CC_READY;
                 SEQ_TRY(9, x0_put(d, BQ769X0_SYS_STAT, 1));

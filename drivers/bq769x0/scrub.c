@@ -12,7 +12,8 @@ int x0_job_compare(bq769x0 *d, bq769x0_frame *f)
     for (f->tries = 0; f->tries < 2u; f->tries++) {
         SEQ_TRY(1, x0_fetch(d, FIRST, COUNT));
         if (x0_holds(d, FIRST, COUNT)) { /* a FET that is off is turned on again by the next apply */
-            d->want[BQ769X0_SYS_CTRL2] &= (uint8_t)(d->data[BQ769X0_SYS_CTRL2 - FIRST] | ~BQ769X0_CTRL2_FETS);
+            d->want[BQ769X0_SYS_CTRL2] &=
+                (uint8_t)(x0_data(d)[BQ769X0_SYS_CTRL2 - FIRST] | ~BQ769X0_CTRL2_FETS);
             return BQ_OK;
         }
     }
@@ -37,7 +38,7 @@ int x0_job_reload(bq769x0 *d, bq769x0_frame *f)
 /* Once a second: what differs is written again, FETs off first (X0-SEQ-20). */
 int x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
 {
-    const uint8_t *read = d->data;
+    const uint8_t *read = x0_data(d);
     SEQ_BEGIN(f)
     SEQ_CALL(1, x0_run(d, x0_job_compare));
     if (d->result == BQ_E_VERIFY) {

@@ -14,7 +14,7 @@ static uint8_t judged(const bq769x0 *d)
 /* Whether every cell in use is back inside, with the hysteresis the user asked for (X0-SEQ-30, X0-SEQ-31). */
 static bool cells_cured(const bq769x0 *d)
 {
-    for (unsigned i = 0; i < d->config.inputs; i++) {
+    for (unsigned i = 0; i < d->inputs; i++) {
         if ((d->in_use >> i & 1u) != 0u) {
             uint32_t mv = x0_cell_mv(d, i);
             if (((d->held & BQ769X0_STAT_OV) != 0u && mv >= d->config.ov_recover_mv) ||
@@ -121,7 +121,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     if ((d->stat & BQ769X0_STAT_FAULTS & (d->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
         /* the register byte of a read carries no CRC (X0-I2C-16): a new bit counts when it is read twice */
         SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_STAT, 1));
-        d->stat &= d->data[0];
+        d->stat &= d->answer;
     }
     f->i = d->stat & BQ769X0_STAT_FAULTS;
     f->x = d->probation && (f->i & judged(d)) != 0u;
@@ -150,9 +150,9 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     if (load_due(d)) {
         SEQ_TRY(5, x0_fetch(d, BQ769X0_SYS_CTRL1, 1));
         d->load_ms = d->now_ms;
-        d->loads = (d->data[0] & BQ769X0_CTRL1_LOAD_PRESENT) != 0u ? 0u
-                   : d->loads < 4u                                 ? (uint8_t)(d->loads + 1u)
-                                                                   : d->loads;
+        d->loads = (d->answer & BQ769X0_CTRL1_LOAD_PRESENT) != 0u ? 0u
+                   : d->loads < 4u                                ? (uint8_t)(d->loads + 1u)
+                                                                  : d->loads;
     }
     if (!cured(d)) {
         d->held_ms = d->now_ms;

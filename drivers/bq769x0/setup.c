@@ -61,7 +61,7 @@ bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i
         d->apart = borders(d->in_use);
     }
     if (config->die_v25_uv != 0u) {
-        d->die_v25_uv = config->die_v25_uv;
+        d->config.die_v25_uv = config->die_v25_uv;
     }
     return BQ_OK;
 }

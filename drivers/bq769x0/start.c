@@ -34,10 +34,10 @@ int x0_job_boot(bq769x0 *d, bq769x0_frame *f)
 }
 
 /* Four bytes as they are; a CRC part sends data, crc, data, crc. */
-static bool looks_like_crc(const bq769x0 *d, uint8_t first)
+static bool looks_like_crc(bq769x0 *d, uint8_t first)
 {
     uint8_t head[2] = {(uint8_t)(d->address7 * 2u + 1u), first};
-    return bq_crc8(0, head, 2) == d->data[1] && bq_crc8(0, &d->data[2], 1) == d->data[3];
+    return bq_crc8(0, head, 2) == x0_data(d)[1] && bq_crc8(0, &x0_data(d)[2], 1) == x0_data(d)[3];
 }
 
 /* X0-SEQ-08 by reading; if the two reads disagree X0-SEQ-09 by writing CC_CFG, twice, so that content left
@@ -46,9 +46,9 @@ static int job_probe_crc(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     SEQ_TRY(1, x0_fetch(d, BQ769X0_OV_TRIP, 4));
-    f->x = looks_like_crc(d, d->data[0]) ? 1u : 0u;
+    f->x = looks_like_crc(d, d->answer) ? 1u : 0u;
     SEQ_TRY(2, x0_fetch(d, BQ769X0_ADCGAIN1, 4));
-    if (f->x != (looks_like_crc(d, d->data[0]) ? 1u : 0u)) {
+    if (f->x != (looks_like_crc(d, d->answer) ? 1u : 0u)) {
         d->want[BQ769X0_CC_CFG] = 0x00;
         SEQ_CALL(3, x0_set(d, BQ769X0_CC_CFG, 1));
         f->x = d->result != BQ_OK;
@@ -105,14 +105,14 @@ static int job_past(bq769x0 *d, bq769x0_frame *f)
     f->x = 0;
     f->i = 0xff;
     for (unsigned i = 0; i < 8u; i++) {
-        f->x |= d->data[i];
-        f->i &= d->data[i];
+        f->x |= x0_data(d)[i];
+        f->i &= x0_data(d)[i];
     }
     if (f->x == 0u || f->i == 0xffu) {
         return BQ_E_IMPLAUSIBLE;
     }
-    f->x = d->data[5] == 0xacu && d->data[6] == 0x97u && d->data[7] == 0u;
-    if (!d->fresh_boot && (f->x != 0u || (d->data[0] & BQ769X0_CTRL1_ADC_EN) == 0u)) {
+    f->x = x0_data(d)[5] == 0xacu && x0_data(d)[6] == 0x97u && x0_data(d)[7] == 0u;
+    if (!d->fresh_boot && (f->x != 0u || (d->answer & BQ769X0_CTRL1_ADC_EN) == 0u)) {
         d->data_ms = d->now_ms + 12u + x0_first_ms(d) + X0_SCAN_MS;
         SEQ_YIELD(2, x0_wait(d, 12000u));
     }
@@ -153,7 +153,7 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
     for (f->tries = 0; f->tries < 5u; f->tries++) {
         SEQ_TRY(2, x0_run(d, x0_job_picture));
         f->x = (uint8_t)!d->valid;
-        for (unsigned i = 0; i < d->config.inputs; i++) {
+        for (unsigned i = 0; i < d->inputs; i++) {
             bool carries = d->code[i] >= BQ769X0_UV_MINQUAL, should = ((unsigned)d->in_use >> i & 1u) != 0u;
             f->x |= (uint8_t)(carries != should);
         }
@@ -173,11 +173,11 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_CTRL2, 1));
-    d->want[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->data[0] & BQ769X0_CTRL2_FETS : 0u;
+    d->want[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->answer & BQ769X0_CTRL2_FETS : 0u;
     SEQ_TRY(2, x0_run(d, x0_job_configure));
     d->state = X0_STATE_NONE; /* not before the first picture */
     SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
-    d->want[0] = d->data[0] & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
+    d->want[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
     if (d->want[0] != 0u) {
         SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
     }

@@ -1,81 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Transactions of the bq769x0 with and without CRC, and the jobs that repeat them (X0-I2C, X0-SEQ-48..52). */
-#include "bqhost/crc8.h"
+/* The jobs that repeat transactions and read back what was written (X0-SEQ-16, X0-SEQ-48..53). */
 #include "x0_internal.h"
-#include <string.h>
-
-#define READING 0x80u       /* in the frame of a transfer, beside the number of registers */
-#define PATIENCE_US 200000u /* with a transfer that does not end */
-
-/* Walks over the data bytes of d->bus: puts them there from d->want, or takes them to d->data. With CRC each
- * is followed by its own; the first also covers the address, and in a write the register (X0-I2C-12..15).
- * False: a CRC is wrong. */
-static bool walk(bq769x0 *d, const bq769x0_frame *f)
-{
-    bool reading = f->n >= READING;
-    uint8_t *data = reading ? d->data : &d->want[f->reg], *at = d->bus + 2;
-    uint8_t crc = bq_crc8(0, d->bus, reading ? 1u : 2u);
-    for (unsigned n = f->n & ~READING; n != 0u; n--, data++) {
-        uint8_t *byte = at++;
-        if (reading) {
-            *data = *byte;
-        } else {
-            *byte = *data;
-        }
-        if (d->crc) {
-            crc = bq_crc8(crc, data, 1);
-            if (!reading) {
-                *at = crc;
-            }
-            if (*at++ != crc) {
-                return false;
-            }
-            crc = 0;
-        }
-    }
-    return true;
-}
-
-static void send(bq769x0 *d, const bq769x0_frame *f)
-{
-    bool reading = f->n >= READING;
-    unsigned length = (f->n & ~READING) << d->crc;
-    d->bus[0] = (uint8_t)(d->address7 * 2u + reading);
-    d->bus[1] = f->reg;
-    d->segments[0].data = d->bus + 1;
-    d->segments[0].len = (uint16_t)(reading ? 1u : length + 1u);
-    d->segments[1].data = d->bus + 2;
-    d->segments[1].len = (uint16_t)length;
-    d->segments[1].read = true; /* the last segment ends with STOP */
-    if (!reading) {
-        (void)walk(d, f);
-    }
-    d->stats.bytes += length + 2u + reading;
-    x0_bump(&d->stats.packets);
-    d->due_us = d->now_us + PATIENCE_US;
-    d->transfer = d->i2c.ops->start(d->i2c.ctx, d->address7, d->segments, reading ? 2u : 1u);
-    d->busy = d->transfer == BQ_OK;
-    if (!d->busy) {
-        d->due_us = d->now_us;
-    }
-}
-
-/* Judges the transaction that ended last; after a good read d->data holds the registers. */
-static bq_status judge(bq769x0 *d, const bq769x0_frame *f)
-{
-    uint32_t *counter = &d->stats.bus_errors;
-    if (d->transfer == BQ_OK) {
-        if (f->n < READING || walk(d, f)) {
-            return BQ_OK;
-        }
-        d->transfer = BQ_E_CRC;
-        counter = &d->stats.crc_errors;
-    } else if (d->transfer == BQ_E_NACK) {
-        counter = &d->stats.no_answers;
-    }
-    x0_bump(counter);
-    return d->transfer;
-}
 
 void x0_recover(bq769x0 *d)
 {
@@ -94,8 +19,8 @@ int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     for (;;) {
         bool silent;
-        SEQ_YIELD(1, send(d, f));
-        if (judge(d, f) == BQ_OK) {
+        SEQ_YIELD(1, x0_send(d, f));
+        if (x0_judge(d, f) == BQ_OK) {
             return BQ_OK;
         }
         silent = d->transfer == BQ_E_NACK;
@@ -107,11 +32,11 @@ int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
             x0_recover(d);
         }
         SEQ_YIELD(2, x0_wait(d, 1000u));
-        if (f->n < READING) {
+        if (f->n < X0_READING) {
             x0_bump(&d->stats.write_errors);
             if (f->reg == BQ769X0_SYS_STAT) {
                 SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
-                d->want[0] &= d->data[0];
+                d->want[0] &= d->answer;
             }
         }
     }
@@ -120,7 +45,7 @@ int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
 
 void x0_fetch(bq769x0 *d, unsigned reg, unsigned n)
 {
-    (void)x0_push(d, x0_job_transfer, reg, n | READING);
+    (void)x0_push(d, x0_job_transfer, reg, n | X0_READING);
 }
 
 void x0_put(bq769x0 *d, unsigned reg, unsigned n)
@@ -131,16 +56,16 @@ void x0_put(bq769x0 *d, unsigned reg, unsigned n)
 /* One try only. */
 void x0_once(bq769x0 *d, unsigned reg, unsigned n, bool reading)
 {
-    x0_push(d, x0_job_transfer, reg, reading ? n | READING : n)->tries = X0_TRIES;
+    x0_push(d, x0_job_transfer, reg, reading ? n | X0_READING : n)->tries = X0_TRIES;
 }
 
 /* Whether registers `reg`.. as read hold what they should: reserved bits are masked (X0-BIT-03), and a FET
  * that the chip took back is no difference: whoever turned it on looks himself. */
-bool x0_holds(const bq769x0 *d, unsigned reg, unsigned n)
+bool x0_holds(bq769x0 *d, unsigned reg, unsigned n)
 {
     static const uint8_t mask[] = {0, 0x1f, 0x1f, 0x1f, 0x1f, 0xc3, 0x9f, 0x7f, 0xf0, 0xff, 0xff, 0x3f};
-    for (unsigned i = 0; i < n; i++, reg++) {
-        unsigned differs = (unsigned)(d->data[i] ^ d->want[reg]) & mask[reg];
+    for (const uint8_t *read = x0_data(d); n != 0u; n--, reg++) {
+        unsigned differs = (unsigned)(*read++ ^ d->want[reg]) & mask[reg];
         if (reg == BQ769X0_SYS_CTRL2) {
             differs &= ~(d->want[reg] & BQ769X0_CTRL2_FETS);
         }
@@ -151,7 +76,7 @@ bool x0_holds(const bq769x0 *d, unsigned reg, unsigned n)
     return true;
 }
 
-/* Writes registers as they should be, reads them back and compares (X0-SEQ-16). d->data holds what was read.
+/* Writes registers as they should be, reads them back and compares (X0-SEQ-16).
  */
 int x0_job_set(bq769x0 *d, bq769x0_frame *f)
 {

@@ -5,7 +5,8 @@
  * frame or in the instance. The frames form a fixed stack in the instance.
  *
  * A job is named where it is begun or called and nowhere else, so a linker keeps only the jobs that something
- * in the program can begin. Base set: engine.c, transfer.c, configure.c, measure.c, sample.c, outputs.c.
+ * in the program can begin. Base set: engine.c, transfer.c, configure.c, measure.c, readings.c,
+ * sample.c, balance.c, outputs.c.
  */
 #ifndef X0_INTERNAL_H
 #define X0_INTERNAL_H
@@ -19,10 +20,11 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-#define X0_BAT 15u       /* where BAT and TS1 lie in d->code */
+/* where in d->code, behind the cells: BAT, TS1.., the coulomb counter, and TS1.. while they show the die */
+#define X0_BAT 15u
 #define X0_TS 16u
-#define X0_TAIL 30u /* where BAT lies in d->data after a picture, two bytes a register pair */
-#define X0_CC 38u   /* ... and the result of the coulomb counter */
+#define X0_CC 19u
+#define X0_DIE 20u
 
 /* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
  * compiler refuses doubles. */
@@ -58,11 +60,16 @@ void x0_wait(bq769x0 *d, uint32_t us);
 void x0_tick(bq769x0 *d);
 void x0_bump(uint32_t *counter);
 
-/* transfer.c: children of a job. Reads arrive in d->data, what is written lies in d->want. */
+/* transaction.c: one, as the frame of a transfer describes it */
+#define X0_READING 0x80u /* in its n, beside the number of registers */
+void x0_send(bq769x0 *d, const bq769x0_frame *f);
+bq_status x0_judge(bq769x0 *d, const bq769x0_frame *f);
+
+/* transfer.c: children of a job. Reads arrive in x0_data(), what is written lies in d->want. */
 void x0_fetch(bq769x0 *d, unsigned reg, unsigned n);
 void x0_put(bq769x0 *d, unsigned reg, unsigned n);
 void x0_set(bq769x0 *d, unsigned reg, unsigned n); /* written, read back, compared */
-bool x0_holds(const bq769x0 *d, unsigned reg, unsigned n);
+bool x0_holds(bq769x0 *d, unsigned reg, unsigned n);
 void x0_recover(bq769x0 *d);
 int x0_job_transfer(bq769x0 *d, bq769x0_frame *f);
 int x0_job_set(bq769x0 *d, bq769x0_frame *f);
@@ -79,15 +86,23 @@ unsigned x0_bits(unsigned mask);
 /* measure.c */
 int x0_job_measure(bq769x0 *d, bq769x0_frame *f);
 int x0_job_picture(bq769x0 *d, bq769x0_frame *f);
-void x0_take_current(bq769x0 *d, const uint8_t *cc);
+void x0_take_current(bq769x0 *d, uint16_t raw);
 void x0_invalidate(bq769x0 *d, uint16_t fault);
 
-/* sample.c */
+/* readings.c */
 uint32_t x0_cell_mv(const bq769x0 *d, unsigned input);
+uint8_t x0_quality(bool measured, unsigned bad, bool doubtful);
+void x0_read_cell(const bq769x0 *d, bq_cell_reading *c, unsigned input);
+void x0_read_temp(const bq769x0 *d, bq_temp_reading *t, uint16_t code);
+
+/* sample.c */
 uint16_t x0_flags(unsigned events);
 
 /* outputs.c */
 unsigned x0_allowed(unsigned events);
+
+/* balance.c */
+unsigned x0_choose(const bq769x0 *d, unsigned asked);
 void x0_balance(bq769x0 *d, unsigned cells);
 
 /* beyond the base set */
@@ -114,6 +129,12 @@ int x0_job_die(bq769x0 *d, bq769x0_frame *f);
 static inline unsigned x0_events(const bq769x0 *d)
 {
     return (unsigned)(d->held | d->stat) & BQ769X0_STAT_FAULTS;
+}
+
+/* The registers read last. */
+static inline uint8_t *x0_data(bq769x0 *d)
+{
+    return d->bus + 2;
 }
 
 /* True once the clock has reached `ms`. */

@@ -46,6 +46,25 @@ bq_status bq769x0_uv_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *tri
 bq_status bq769x0_ov_trip(bq769x0_trim trim, uint16_t mv, uint8_t *trip, int32_t *achieved_uv);
 bq_status bq769x0_uv_trip(bq769x0_trim trim, uint16_t mv, uint8_t *trip, int32_t *achieved_uv);
 
+/** The same with one function: the trip code of an OV limit, or of a UV limit (`under`); -1: no code, nothing
+ * written. */
+int bq769x0_trip(bq769x0_trim trim, uint16_t mv, bool under, int32_t *achieved_uv);
+
+/** Delays of the protections: in the unit of the name. */
+typedef enum bq769x0_delay {
+    BQ769X0_DELAY_OCD_MS, /**< 8, 20, 40 .. 1280 (X0-OCD-04) */
+    BQ769X0_DELAY_SCD_US, /**< 70, 100, 200, 400 (X0-SCD-02) */
+    BQ769X0_DELAY_OV_S,   /**< 1, 2, 4, 8 (X0-OV-04) */
+    BQ769X0_DELAY_UV_S    /**< 1, 4, 8, 16 (X0-UV-04) */
+} bq769x0_delay;
+
+/** Code of the longest delay not above `limit`, and that delay; -1: none, nothing written. */
+int bq769x0_delay_code(bq769x0_delay kind, unsigned limit, uint16_t *achieved);
+
+/** Voltage in uV of a current across the shunt, fraction dropped; UINT32_MAX above 4 kA. `shunt_uohm` is at
+ * most 100000. */
+uint32_t bq769x0_shunt_uv(uint32_t ma, uint32_t shunt_uohm);
+
 /** Current limits in the chip's terms. */
 typedef struct bq769x0_current_limits {
     uint8_t protect1, protect2; /**< register values; one RSNS bit serves both tables */

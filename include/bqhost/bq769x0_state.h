@@ -24,10 +24,10 @@ typedef struct bq769x0_frame {
     uint8_t tries, i, x; /* its variables */
 } bq769x0_frame;
 
-/* Small members first: on ARMv6-M only the first 32 bytes (64 of half-words, 128 of words) are one
- * instruction away. */
+/* In this order because on ARMv6-M only the first 32 bytes (64 of half-words, 128 of words) are one
+ * instruction away, and what lies beyond 256 costs most. Not to be copied or moved once set up. */
 typedef struct bq769x0 {
-    uint8_t depth, state;
+    uint8_t state;
     bool busy;         /* a transfer is under way */
     bool valid;        /* the picture counts */
     bool measured;     /* there was a picture */
@@ -36,56 +36,64 @@ typedef struct bq769x0 {
     bool temp_held;    /* ... and stay as they are: the source is another one for a while */
     bool current_seen; /* there was a result of the coulomb counter */
     bool crc;
+    bool die_hot; /* no balancing: the die is too hot */
     uint8_t stat; /* SYS_STAT as read last */
     uint8_t held; /* SYS_STAT bits that are not released yet */
     uint8_t address7;
-    uint8_t groups;   /* of five inputs */
-    uint8_t want[12]; /* registers 0x00..0x0b as they should be; [0] = bits to clear */
-    uint8_t loads;    /* LOAD_PRESENT = 0 in a row */
-    uint8_t strikes;  /* fault events in a row */
-    bool fresh_boot;  /* booted by this driver: temperatures come with the first scan */
-    bool probation;   /* fault bits were cleared and must stay clear for a while */
-    bool locked;      /* too many short circuits */
-    bool again;       /* the present fault came back */
-    bool released;    /* event_ms is the time of a release */
-    bool die_hot;     /* no balancing: the die is too hot */
-    bool die_fault;   /* ... and near the end of its range */
-    bool die_known;   /* die_dc is a temperature */
-    bool die_looked;  /* die_ms is the time of a look at the die */
-    uint8_t die_phase;
-    int16_t die_dc;    /* of the hottest sensor */
-    uint16_t in_use;   /* inputs that carry cells */
-    uint16_t balance;  /* cells whose switch is commanded */
-    uint16_t balanced; /* ... during the last picture */
-    uint16_t faults;   /* BQ_F_... of the picture */
-    uint16_t asked;    /* cells the caller wants bled */
-    uint16_t apart;    /* cells whose lower neighbour may be bled together with them */
-    int16_t cc_code;
-    uint16_t gain2_q15; /* GAIN2 in units of 1/32768 */
-    uint16_t same;      /* identical pictures in a row */
+    uint8_t groups; /* of five inputs */
+    uint8_t inputs;
+    uint8_t answer;     /* first register of the last read */
+    uint8_t want[12];   /* registers 0x00..0x0b as they should be; [0] = bits to clear */
     bq_status result;   /* of the job that ended last */
     bq_status transfer; /* of the transfer that ended last */
+    uint16_t in_use;    /* inputs that carry cells */
+    uint16_t balance;   /* cells whose switch is commanded */
+    uint16_t balanced;  /* ... during the last picture */
+    uint16_t faults;    /* BQ_F_... of the picture */
+    uint16_t asked;     /* cells the caller wants bled */
+    uint16_t apart;     /* cells whose lower neighbour may be bled together with them */
+    int16_t cc_code;
+    uint16_t gain2_q15;        /* GAIN2 in units of 1/32768 */
+    struct bq769x0_frame *top; /* frame of the job that runs */
     uint32_t now_us, now_ms, rest_us;
     uint32_t due_us; /* end of a wait, or of the patience with a transfer */
-    uint32_t picture_ms, picture_us, cc_ms, temp_ms, served_ms, sequence;
+    uint32_t cc_ms, temp_ms, served_ms;
     uint32_t data_ms; /* from when on the measurement registers count */
     uint32_t scrub_ms;
+    bq_i2c_segment segments[2];
+    bq_i2c i2c;
+    bq769x0_achieved achieved;
+    uint32_t picture_ms, picture_us, sequence;
+    bq_clock clock;
+    bq769x0_config config;
+    bq_link_stats stats;
+    uint8_t
+        bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
+    uint16_t code[23]; /* of 15 inputs, BAT, TS1..TS3, coulomb counter, TS1..TS3 while they show the die */
+    bq769x0_frame frames[BQ769X0_FRAMES + 1u];
+    bq_gpio gpio;
+    /* faults */
+    uint8_t loads;     /* LOAD_PRESENT = 0 in a row */
+    uint8_t strikes;   /* fault events in a row */
+    bool fresh_boot;   /* booted by this driver: temperatures come with the first scan */
+    bool probation;    /* fault bits were cleared and must stay clear for a while */
+    bool locked;       /* too many short circuits */
+    bool again;        /* the present fault came back */
+    bool released;     /* event_ms is the time of a release */
     uint32_t held_ms;  /* since when the release condition holds, or when the probation began */
     uint32_t event_ms; /* when the last fault bit appeared, or when it was released */
-    uint32_t load_ms, same_ms, print; /* print of the last picture */
-    uint32_t die_ms, hold_ms;         /* hold_ms: since when temperatures are held */
-    uint32_t die_v25_uv;
-    bq769x0_achieved achieved;
-    bq_clock clock;
-    bq_i2c i2c;
-    bq769x0_config config;
-    uint16_t code[19]; /* of 15 inputs, BAT, TS1..TS3 */
-    uint8_t data[40];  /* registers read last */
-    bq_i2c_segment segments[2];
-    uint8_t bus[BQ769X0_BUFFER]; /* as it travels: address, register, data, each with its CRC */
-    bq_link_stats stats;
-    bq769x0_frame frames[BQ769X0_FRAMES];
-    bq_gpio gpio;
+    uint32_t load_ms;
+    /* a converter that stands */
+    uint16_t same;           /* identical pictures in a row */
+    uint32_t same_ms, print; /* print of the last picture */
+    /* die */
+    bool die_fault;  /* near the end of its range */
+    bool die_known;  /* die_dc is a temperature */
+    bool die_looked; /* die_ms is the time of a look at the die */
+    uint8_t die_phase;
+    int16_t die_dc;           /* of the hottest sensor */
+    uint32_t die_ms, hold_ms; /* hold_ms: since when temperatures are held */
+    /* charge and calibration */
     bq769x0_charge charge;
     int16_t charge_code;                    /* result counted last */
     uint32_t charge_ms;                     /* ... and when */

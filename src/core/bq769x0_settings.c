@@ -46,25 +46,13 @@ bq_status bq769x0_uv_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *tri
     return trip_of(trim, mv, 0x1000, trip);
 }
 
-/* OV: the largest trip with 0x2008 + 16 trip not above the request. UV: the smallest with 0x1000 + 16 trip
- * not below it. The request itself must lie inside the range, in whole codes on its safe side. */
 static bq_status safe_trip(bq769x0_trim trim, uint16_t mv, bool under, uint8_t *trip, int32_t *achieved_uv)
 {
-    uint32_t most = 0x0ff7, base = 0x2008, up = 0; /* codes above `base` */
-    int32_t uv = above_offset_uv(trim, mv);
-    if (under) {
-        most = 0x0ff0;
-        base = 0x1000;
-        up = 15;
-        uv += trim.gain_uv - 1;
-    }
-    uint32_t code = uv < 0 ? 0u : (uint32_t)uv / trim.gain_uv - base;
-    if (uv < 0 || code > most) {
+    int code = bq769x0_trip(trim, mv, under, achieved_uv);
+    if (code < 0) {
         return BQ_E_NO_CODE;
     }
-    code = (code + up) >> 4;
     *trip = (uint8_t)code;
-    *achieved_uv = bq769x0_cell_uv(trim, (uint16_t)(base + (code << 4)));
     return BQ_OK;
 }
 
@@ -87,20 +75,6 @@ static int threshold(const uint8_t *table, int n, uint32_t limit)
     return n;
 }
 
-/* Delays double from code 1 to code 2 and so on; code 0 has one of its own. Finds the longest that is not
- * above `limit`: its code, or -1. */
-static int delay(uint16_t *achieved, unsigned of_code_0, unsigned half_of_code_1, int code, unsigned limit)
-{
-    for (; code >= 0; code--) {
-        unsigned value = code == 0 ? of_code_0 : half_of_code_1 << code;
-        if (value <= limit) {
-            *achieved = (uint16_t)value;
-            break;
-        }
-    }
-    return code;
-}
-
 bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t scd_uv,
                                 uint16_t scd_delay_us, bq769x0_current_limits *out)
 {
@@ -109,8 +83,8 @@ bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t
     /* the coarse range only when it holds both limits and one of them needs it */
     unsigned range = (ocd > 50u || scd > 100u) && ocd >= 17u && scd >= 44u ? 1u : 0u;
     int o = threshold(ocd_mv[range], 16, ocd), s = threshold(scd_mv[range], 8, scd);
-    int od = delay(&l.ocd_delay_ms, 8, 10, 7, ocd_delay_ms),
-        sd = delay(&l.scd_delay_us, 70, 50, 3, scd_delay_us);
+    int od = bq769x0_delay_code(BQ769X0_DELAY_OCD_MS, ocd_delay_ms, &l.ocd_delay_ms);
+    int sd = bq769x0_delay_code(BQ769X0_DELAY_SCD_US, scd_delay_us, &l.scd_delay_us);
     if ((o | s | od | sd) < 0) { /* one of them is -1 */
         return BQ_E_NO_CODE;
     }
@@ -128,7 +102,8 @@ bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t
 bq_status bq769x0_protect3(uint8_t ov_delay_s, uint8_t uv_delay_s, uint8_t *reg)
 {
     uint16_t achieved;
-    int o = delay(&achieved, 1, 1, 3, ov_delay_s), u = delay(&achieved, 1, 2, 3, uv_delay_s);
+    int o = bq769x0_delay_code(BQ769X0_DELAY_OV_S, ov_delay_s, &achieved);
+    int u = bq769x0_delay_code(BQ769X0_DELAY_UV_S, uv_delay_s, &achieved);
     if ((o | u) < 0) {
         return BQ_E_NO_CODE;
     }
