@@ -154,6 +154,21 @@ ${images%$'\n'}
 TEXT
 }
 
+afe_size_part() {
+    arm || return 0
+    cat <<TEXT
+
+The bq769x0 driver by itself on a Cortex-M0+, bytes of flash of driver and core, without the table of the thermistor, which is the user's
+(456 bytes for \`bq_thermistor_103at\`). The base set configures a part from physical limits with read-back, measures in three
+transactions, switches FETs and balancing outputs with read-back, reports faults and clears them on request; it neither probes nor
+recovers by itself. No writable data, no floating point: the command fails otherwise.
+
+    tools/afe_size.sh
+
+$(sh tools/afe_size.sh)
+TEXT
+}
+
 stack_part() {
     cat <<'TEXT'
 
@@ -208,7 +223,7 @@ for tool in valgrind python3; do
     have $tool || { echo "bench: $tool is needed" >&2; exit 1; }
 done
 build table16 bench
-for part in bus instruction size stack speed; do
+for part in bus instruction size afe_size stack speed; do
     "${part}_part" >>"$page"
 done
 cp "$page" "$out"

@@ -55,6 +55,8 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     d->achieved.protect3 = protect3;
     d->in_use = in_use;
     d->inputs = config->inputs;
+    d->cells = config->cells;
+    d->temps = config->sensors != 0u ? config->sensors : 1u;
     d->groups = config->inputs / 5u;
     d->address7 = d->achieved.address7 = config->address7;
     d->crc = d->achieved.crc = config->crc == BQ769X0_CRC_ON;

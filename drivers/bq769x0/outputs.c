@@ -51,7 +51,7 @@ bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action)
         fets &= ~BQ769X0_CTRL2_DSG_ON;
     }
     d->top->reg = d->valid && d->temp_valid ? (uint8_t)fets : 0u;
-    d->asked = (uint16_t)(action->balance[0] & ((1u << d->config.cells) - 1u));
+    d->asked = (uint16_t)(action->balance[0] & ((1u << d->cells) - 1u));
     if (d->valid && events == 0u && !d->die_hot) {
         cells = x0_choose(d, d->asked);
     }

@@ -38,9 +38,7 @@ static void fill_module(const bq769x0 *d, bq_module_reading *m)
 
 bq_status bq769x0_sample(bq769x0 *d, bq_sample *s)
 {
-    unsigned temps = d->config.sensors != 0u ? d->config.sensors : 1u;
-    if (s == NULL || s->cell_capacity < d->config.cells || s->temp_capacity < temps ||
-        s->module_capacity < 1u) {
+    if (s == NULL || s->cell_capacity < d->cells || s->temp_capacity < d->temps || s->module_capacity < 1u) {
         return BQ_E_ARG;
     }
     if (!d->measured) {
@@ -49,11 +47,11 @@ bq_status bq769x0_sample(bq769x0 *d, bq_sample *s)
     x0_tick(d);
     fill_module(d, s->modules);
     fill_cells(d, s->cells, s->modules);
-    for (unsigned i = 0; i < temps; i++) {
+    for (unsigned i = 0; i < d->temps; i++) {
         x0_read_temp(d, &s->temps[i], d->code[X0_TS + i]);
     }
-    s->cell_count = d->config.cells;
-    s->temp_count = (uint16_t)temps;
+    s->cell_count = d->cells;
+    s->temp_count = d->temps;
     s->module_count = 1;
     s->sequence = d->sequence;
     s->t_us = d->picture_us;

@@ -27,10 +27,10 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 #define X0_DIE 20u
 
 /* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
- * compiler refuses doubles. */
+ * compiler refuses doubles. Point 0 is the beginning. */
 #define SEQ_BEGIN(f)                                                                                         \
     switch ((f)->at) {                                                                                       \
-    case 0:
+    default:
 #define SEQ_END                                                                                              \
     }                                                                                                        \
     return BQ_E_STATE

@@ -42,16 +42,17 @@ typedef struct bq769x0 {
     uint8_t address7;
     uint8_t groups; /* of five inputs */
     uint8_t inputs;
-    uint8_t answer;     /* first register of the last read */
-    uint8_t want[12];   /* registers 0x00..0x0b as they should be; [0] = bits to clear */
-    bq_status result;   /* of the job that ended last */
-    bq_status transfer; /* of the transfer that ended last */
-    uint16_t in_use;    /* inputs that carry cells */
-    uint16_t balance;   /* cells whose switch is commanded */
-    uint16_t balanced;  /* ... during the last picture */
-    uint16_t faults;    /* BQ_F_... of the picture */
-    uint16_t asked;     /* cells the caller wants bled */
-    uint16_t apart;     /* cells whose lower neighbour may be bled together with them */
+    uint8_t cells, temps; /* in a sample */
+    uint8_t answer;       /* first register of the last read */
+    uint8_t want[12];     /* registers 0x00..0x0b as they should be; [0] = bits to clear */
+    bq_status result;     /* of the job that ended last */
+    bq_status transfer;   /* of the transfer that ended last */
+    uint16_t in_use;      /* inputs that carry cells */
+    uint16_t balance;     /* cells whose switch is commanded */
+    uint16_t balanced;    /* ... during the last picture */
+    uint16_t faults;      /* BQ_F_... of the picture */
+    uint16_t asked;       /* cells the caller wants bled */
+    uint16_t apart;       /* cells whose lower neighbour may be bled together with them */
     int16_t cc_code;
     uint16_t gain2_q15;        /* GAIN2 in units of 1/32768 */
     struct bq769x0_frame *top; /* frame of the job that runs */
