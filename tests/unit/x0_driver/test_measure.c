@@ -116,16 +116,9 @@ static void test_values_that_never_change(void)
     rig_clean();
 }
 
-/* CRC looked at in the first half of a block only. */
-static bool wrong_check(unsigned byte)
-{
-    return byte < 40u;
-}
-
 /* proves: X0-I2C-19, X0-SEQ-48, X0-I2C-15 */
 static void test_the_field_mistake_of_half_a_crc_check(void)
 {
-    unsigned missed = 0;
     rig_up("bq7694003", 15);
     for (unsigned byte = 0; byte < 80u; byte++) {
         uint32_t errors;
@@ -138,9 +131,7 @@ static void test_the_field_mistake_of_half_a_crc_check(void)
         TEST_ASSERT_EQUAL_UINT(errors + 1u, rig.d.stats.crc_errors);
         TEST_ASSERT_EQUAL_INT(BQ_OK, rig_sample());
         TEST_ASSERT_UINT_WITHIN(1, 3600, rig.cells[14].mv); /* of its own register after the repetition */
-        missed += !wrong_check(byte);
     }
-    TEST_ASSERT_EQUAL_UINT(40, missed);
     rig_clean();
 }
 
