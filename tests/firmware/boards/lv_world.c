@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "lv_world.h"
+#include <stdio.h>
 #include <string.h>
 
 lv_world lv;
@@ -52,6 +53,10 @@ static void pin_out(void *ctx, unsigned port, unsigned pin, emu_drive drive)
             lv.boot_from = 0;
         }
     }
+    if (port == 1 && (pin == 6 || pin == 7)) {
+        lv.clock_first = lv.clock_first != 0 ? lv.clock_first : emu_now(lv.e);
+        lv.clock_last = emu_now(lv.e);
+    }
     if (port == 1 && pin == 6 && drive == EMU_DRIVE_LOW) { /* a clock by hand: recovery */
         sim_x0_recovery_clock(&lv.chip);
     }
@@ -69,6 +74,10 @@ static emu_i2c_answer i2c_start(void *ctx, unsigned bus, uint8_t address_byte)
 {
     (void)ctx;
     (void)bus;
+    if (lv.upset != 0) {
+        lv.upset--;
+        return lv.upset_answer;
+    }
     sim_x0_i2c_start(&lv.chip);
     return answer(sim_x0_i2c_write(&lv.chip, address_byte));
 }
@@ -99,6 +108,15 @@ static unsigned i2c_lines(void *ctx, unsigned bus)
     (void)ctx;
     (void)bus;
     return sim_x0_sda_free(&lv.chip) ? 0u : EMU_I2C_SDA_LOW;
+}
+
+static uint64_t i2c_stretch_ns(void *ctx, unsigned bus)
+{
+    uint64_t ns = lv.stretch_ns;
+    (void)ctx;
+    (void)bus;
+    lv.stretch_ns = 0;
+    return ns;
 }
 
 static emu_can_result can_out(void *ctx, unsigned bus, const emu_can_frame *frame)
@@ -145,6 +163,7 @@ bool lv_start(const char *image)
                              .i2c_read = i2c_read,
                              .i2c_stop = i2c_stop,
                              .i2c_lines = i2c_lines,
+                             .i2c_stretch_ns = i2c_stretch_ns,
                              .can_out = can_out,
                              .uart_out = uart_out};
     memset(&lv, 0, sizeof lv);
@@ -180,4 +199,23 @@ void lv_type(const char *line)
 bool lv_both_fets(void)
 {
     return sim_x0_chg(&lv.chip) && sim_x0_dsg(&lv.chip);
+}
+
+/* The GNU linker's map: "    0x<address>    name". */
+bool lv_mark(const char *map)
+{
+    char line[512], name[256];
+    unsigned long address;
+    FILE *file = fopen(map, "r");
+    bool found = false;
+    while (file != NULL && !found && fgets(line, sizeof line, file) != NULL) {
+        found = sscanf(line, " %lx %255s", &address, name) == 2 && strcmp(name, "bq_firmware_step") == 0;
+    }
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    if (found) {
+        emu_mark(lv.e, (uint32_t)address);
+    }
+    return found;
 }

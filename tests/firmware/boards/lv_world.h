@@ -23,6 +23,10 @@ typedef struct lv_world {
     emu_can_frame last[16]; /* of each id from 0x100 on */
     unsigned count[16];
     bool led;
+    uint64_t clock_first, clock_last; /* changes of SCL and SDA by hand: recovery */
+    unsigned upset;                   /* so many of the next address bytes get this answer instead */
+    emu_i2c_answer upset_answer;
+    uint64_t stretch_ns; /* after the next byte, once */
 } lv_world;
 
 extern lv_world lv;
@@ -35,5 +39,7 @@ void lv_run(unsigned ms);
 /** Types a line and runs on for 300 ms. */
 void lv_type(const char *line);
 bool lv_both_fets(void);
+/** Marks the step of the main loop, which the map beside the image names. */
+bool lv_mark(const char *map);
 
 #endif

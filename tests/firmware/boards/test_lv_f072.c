@@ -4,6 +4,7 @@
 #include "lv_world.h"
 #include "unity.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define CAUSE_POWER 1
@@ -198,6 +199,79 @@ static void test_stuck_bus(void)
     TEST_ASSERT_TRUE(lv_both_fets());
 }
 
+static const char *counter(const char *name)
+{
+    const char *at;
+    lv_type("counters\r");
+    at = strstr(lv.said, name);
+    return at != NULL ? at + strlen(name) : "";
+}
+
+/* hal.h: a recovery blocks for 200 us at most. */
+static void test_recovery_is_short(void)
+{
+    up();
+    lv.clock_first = 0;
+    sim_x0_bus(&lv.chip)->stuck_clocks = 9;
+    lv_run(UP_MS + 260);
+    TEST_ASSERT_TRUE(lv.clock_first != 0);
+    TEST_ASSERT_TRUE(lv.clock_last - lv.clock_first >= 9u * 9000u); /* nine clocks of 100 kHz or so */
+    TEST_ASSERT_TRUE(lv.clock_last - lv.clock_first <= 200000u);
+    TEST_ASSERT_TRUE(sim_x0_sda_free(&lv.chip));
+}
+
+/* hal.h: clock stretching up to 10 ms is tolerated, what lasts longer is cut off and repeated. */
+static void test_stretching(void)
+{
+    up();
+    lv.stretch_ns = 9500000;
+    lv_run(UP_MS + 500);
+    TEST_ASSERT_EQUAL_UINT(0, lv.stretch_ns);
+    TEST_ASSERT_EQUAL_INT(0, strncmp(counter("bus errors "), "0\r", 2));
+    lv.stretch_ns = 30000000;
+    lv_run(UP_MS + 1500);
+    TEST_ASSERT_EQUAL_UINT(0, lv.stretch_ns);
+    TEST_ASSERT_TRUE(strncmp(counter("bus errors "), "0\r", 2) != 0);
+    TEST_ASSERT_TRUE(lv_both_fets());
+    clean();
+}
+
+/* A missing acknowledge, a lost arbitration, a START at a wrong place: one transaction fails, the next one
+ * works. */
+static void test_errors_of_the_bus(void)
+{
+    static const emu_i2c_answer answers[] = {EMU_I2C_NACK, EMU_I2C_LOST, EMU_I2C_ERROR};
+    static const char *const counters[] = {"no answers ", "bus errors ", "bus errors "};
+    up();
+    for (unsigned i = 0; i < 3u; i++) {
+        int before = atoi(counter(counters[i]));
+        lv.upset = 1;
+        lv.upset_answer = answers[i];
+        (void)emu_run_until(lv.e, emu_now(lv.e) + 600 * MS);
+        TEST_ASSERT_EQUAL_UINT(0, lv.upset);
+        TEST_ASSERT_EQUAL_INT(before + 1, atoi(counter(counters[i])));
+        TEST_ASSERT_TRUE(lv_both_fets());
+    }
+    TEST_ASSERT_EQUAL_UINT(0, emu_get_misuse(lv.e)->count);
+}
+
+/* Nothing in one pass takes longer than 200 us: 9600 cycles of 48 MHz. */
+static void test_no_pass_is_long(void)
+{
+    TEST_ASSERT_TRUE(lv_mark(MAP));
+    up();
+    emu_meter_clear(lv.e);
+    lv_type("status\r");
+    lv_type("cells\r");
+    lv_type("counters\r");
+    lv_type("faults\r");
+    lv_type("help\r");
+    lv_type("self-test\r");
+    lv_run(8000);
+    TEST_ASSERT_TRUE(emu_get_meter(lv.e)->longest_pass > 1000u); /* the mark is visited */
+    TEST_ASSERT_TRUE(emu_get_meter(lv.e)->longest_pass <= 9600u);
+}
+
 int main(void)
 {
     if (!lv_start(IMAGE)) {
@@ -217,5 +291,9 @@ int main(void)
     RUN_TEST(test_reset_pin);
     RUN_TEST(test_damaged_image);
     RUN_TEST(test_stuck_bus);
+    RUN_TEST(test_recovery_is_short);
+    RUN_TEST(test_stretching);
+    RUN_TEST(test_errors_of_the_bus);
+    RUN_TEST(test_no_pass_is_long);
     return UNITY_END();
 }
