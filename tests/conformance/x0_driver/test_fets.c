@@ -214,6 +214,10 @@ static void test_calibration(void)
                 TEST_ASSERT_EQUAL(before, b.cells[0].mv);
             }
         }
+        TEST_ASSERT_EQUAL_HEX8(bq769x0_get_achieved(&b.d)->ov_trip, sim_x0_peek(&b.chip, 9));
+        bench_serve(1500, 250); /* thresholds are not corrected by it */
+        TEST_ASSERT_EQUAL_HEX8(bq769x0_get_achieved(&b.d)->ov_trip, sim_x0_peek(&b.chip, 9));
+        TEST_ASSERT_EQUAL_HEX16(0, b.module.faults);
         TEST_ASSERT_EQUAL(BQ_OK, bq769x0_calibrate(&b.d, sum));
         TEST_ASSERT_FALSE(bq769x0_calibration_due(&b.d));
         (void)sim_x0_set_cell(&b.chip, 1, 3.51);

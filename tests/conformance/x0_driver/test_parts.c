@@ -232,6 +232,37 @@ static void test_an_input_gains_a_cell_in_the_order_of_the_tables(void)
         }
 }
 
+/* A wiring of one's own is accepted exactly when it keeps the rule of all tables: the lowest two inputs and
+   the top one of each group, and as many as there are cells. */
+/* proves: X0-CELL-16 */
+static void test_every_wiring_there_could_be(void)
+{
+    static const char *const name[3] = {"bq7692003", "bq7693003", "bq7694003"};
+    unsigned size, mask, g;
+    for (size = 0; size < 3; size++) {
+        bench_part(name[size], NULL);
+        for (mask = 1; mask < 1u << (5 * size + 5); mask++) {
+            bool legal = true;
+            for (g = 0; g <= size; g++)
+                legal = legal && (mask >> (5 * g) & 0x13) == 0x13;
+            b.cfg.wiring = (uint16_t)mask;
+            b.cfg.cells = (uint8_t)__builtin_popcount(mask);
+            TEST_ASSERT_EQUAL(legal, bench_init() == BQ_OK);
+            if (!legal)
+                continue;
+            if (bench_random(8) == 0) {
+                bench_cells(3.6);
+                bench_wait(300);
+                TEST_ASSERT_EQUAL(BQ_OK, bench_start());
+                TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
+                TEST_ASSERT_INT_WITHIN(b.cfg.cells, 3600 * b.cfg.cells, (int)b.module.stack_mv);
+            }
+            b.cfg.cells++;
+            TEST_ASSERT_EQUAL(BQ_E_CELLS, bench_init());
+        }
+    }
+}
+
 /* proves: X0-VAR-23 */
 static void test_chemistry_is_a_matter_of_limits(void)
 {
@@ -259,6 +290,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_part_with_every_cell_count);
     RUN_TEST(test_an_input_gains_a_cell_in_the_order_of_the_tables);
+    RUN_TEST(test_every_wiring_there_could_be);
     RUN_TEST(test_chemistry_is_a_matter_of_limits);
     return UNITY_END();
 }
