@@ -279,13 +279,31 @@ void bench_cells(double volts)
         (void)sim_x0_set_cell(&b.chip, i, (wiring() >> (i - 1)) & 1 ? volts : 0.0);
 }
 
-bq_status bench_init(void)
+bq_i2c bench_i2c(void)
 {
     static const bq_i2c_ops bus = {i2c_start, i2c_poll, i2c_recover};
-    static const bq_gpio_ops lines = {line_read, line_write};
     bq_i2c i2c = {&bus, NULL};
-    bq_gpio gpio = {&lines, NULL};
+    return i2c;
+}
+
+bq_clock bench_clock(void)
+{
     bq_clock clock = {clock_us, NULL};
+    return clock;
+}
+
+const bq_link_stats *bench_stats(void)
+{
+    bq_afe afe = bq769x0_afe(&b.d);
+    return afe.ops->stats(afe.ctx);
+}
+
+bq_status bench_init(void)
+{
+    static const bq_gpio_ops lines = {line_read, line_write};
+    bq_i2c i2c = bench_i2c();
+    bq_gpio gpio = {&lines, NULL};
+    bq_clock clock = bench_clock();
     bq_status s = bq769x0_init(&b.d, &b.cfg, &i2c, &gpio, &clock);
     if (s == BQ_OK && b.cfg.cells < b.cfg.inputs)
         bench_cells(3.6);

@@ -83,6 +83,10 @@ extern bench b;
 void bench_part(const char *name, const sim_x0_options *options);
 /** bq769x0_init() with b.cfg; inputs not in use are shorted. */
 bq_status bench_init(void);
+/** The back-end that bench_init() gives to the driver, and what the driver counts. */
+bq_i2c bench_i2c(void);
+bq_clock bench_clock(void);
+const bq_link_stats *bench_stats(void);
 /** Polls until the job ends; fails the test when it takes more than `ms`. */
 bq_status bench_run(uint32_t ms);
 bq_status bench_start(void);

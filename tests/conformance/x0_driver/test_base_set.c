@@ -13,12 +13,8 @@ void tearDown(void)
 
 static bq_status known(void)
 {
-    bq_i2c i2c;
-    bq_clock clock;
-    TEST_ASSERT_EQUAL(BQ_OK, bench_init()); /* takes the back-end from there */
-    i2c = b.d.i2c;
-    clock = b.d.clock;
-    memset(&b.d, 0, sizeof b.d);
+    bq_i2c i2c = bench_i2c();
+    bq_clock clock = bench_clock();
     return bq769x0_init_known(&b.d, &b.cfg, &i2c, &clock);
 }
 

@@ -155,8 +155,8 @@ static void test_every_bit_of_a_block_flips_once(void)
         uint32_t retries, crc;
         bench_wait(250);
         (void)bench_scan();
-        retries = b.d.stats.retries;
-        crc = b.d.stats.crc_errors;
+        retries = bench_stats()->retries;
+        crc = bench_stats()->crc_errors;
         b.spoil_at = b.count + 3; /* SYS_STAT, BAT and the rest, cells */
         b.spoil_kind = SPOIL_FLIP;
         b.flip_bit = bit;
@@ -165,9 +165,9 @@ static void test_every_bit_of_a_block_flips_once(void)
         valid_is_true();
         TEST_ASSERT_TRUE(b.cells[0].quality & BQ_Q_VALID);
         if (bit >= 24) /* behind the addresses and the register */
-            TEST_ASSERT_EQUAL(crc + 1, b.d.stats.crc_errors);
+            TEST_ASSERT_EQUAL(crc + 1, bench_stats()->crc_errors);
         if (bit < 8 || bit >= 16)
-            TEST_ASSERT_TRUE(b.d.stats.retries > retries);
+            TEST_ASSERT_TRUE(bench_stats()->retries > retries);
     }
     NO_MISUSE();
 }

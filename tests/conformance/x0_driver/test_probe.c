@@ -123,7 +123,7 @@ static void test_reads_without_repeated_start(void)
         bench_serve(3000, 250);
         TEST_ASSERT_INT_WITHIN(1, 3600, b.cells[b.chip.part->cells - 1].mv);
         TEST_ASSERT_TRUE(sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip));
-        TEST_ASSERT_EQUAL(0, b.d.stats.retries);
+        TEST_ASSERT_EQUAL(0, bench_stats()->retries);
         NO_MISUSE();
     }
 }

@@ -127,12 +127,12 @@ static void test_each_bit_of_the_stack_register_is_a_cross_check(void)
             TEST_ASSERT_EQUAL(BQ_Q_VALID, b.module.quality);
         }
         for (bit = 1; bit < 16; bit++) {
-            uint32_t before = b.d.stats.implausible;
+            uint32_t before = bench_stats()->implausible;
             put(0x2a, bat ^ 1u << bit);
             (void)bench_scan();
             TEST_ASSERT_FALSE(b.cells[0].quality & BQ_Q_VALID);
             TEST_ASSERT_FALSE(b.module.quality & BQ_Q_VALID);
-            TEST_ASSERT_TRUE(b.d.stats.implausible > before);
+            TEST_ASSERT_TRUE(bench_stats()->implausible > before);
         }
         put(0x2a, bat);
         TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
