@@ -12,6 +12,7 @@ void bq_console_init(bq_console *c, const bq_stream *stream)
         c->stream = *stream;
     }
     c->command = CONSOLE_GREETING;
+    console_end(c); /* whatever the life before has left in the row */
 }
 
 bool bq_console_idle(const bq_console *c)

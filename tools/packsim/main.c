@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* packsim: the pack controller firmware on a simulated pack. */
+#include "ps_can.h"
 #include "ps_options.h"
 #include "ps_run.h"
 
@@ -20,6 +21,8 @@ typedef struct session {
     ps_judge judge;
     ps_csv csv;
     ps_report report;
+    ps_can can;
+    ps_console console;
     ps_run run;
 } session;
 
@@ -47,8 +50,43 @@ static int load(session *x, const char *argv0, ps_error *e)
     return ps_scenario_build(&x->scenario, &x->ini, &x->search, &x->options.override, e);
 }
 
+static uint64_t simulated_now(void *ctx)
+{
+    return ps_rig_now(ctx);
+}
+
+/* What hangs on the board besides the monitor; before the firmware starts. */
+static int attach(session *x, ps_error *e)
+{
+    if (x->options.can != NULL) {
+        if (ps_can_open(&x->can, x->options.can, simulated_now, &x->rig) != 0) {
+            return ps_fail(e, (ps_place){x->options.can, 0}, "%s", strerror(errno));
+        }
+        x->rig.can = ps_can_controller(&x->can);
+    }
+    if (x->options.console) {
+        x->rig.console = ps_console_stream(&x->console);
+        x->run.console = &x->console;
+    }
+    return 0;
+}
+
+/* The last thing before the run: a terminal is no longer itself afterwards. */
+static void open_console(session *x)
+{
+    if (x->options.console) {
+        ps_console_open(&x->console);
+        if (x->console.terminal && x->options.override.duration == 0) {
+            x->scenario.duration = UINT64_MAX / 4u;
+        }
+    }
+}
+
 static int prepare(session *x, ps_error *e)
 {
+    if (attach(x, e) != 0) {
+        return -1;
+    }
     if (ps_rig_init(&x->rig, &x->scenario, e) != 0) {
         return -1;
     }
@@ -56,7 +94,8 @@ static int prepare(session *x, ps_error *e)
     x->run.rig = &x->rig;
     x->run.judge = &x->judge;
     x->run.watch = x->options.watch;
-    x->run.progress = !x->options.quiet && !x->options.watch && isatty(STDERR_FILENO) == 1;
+    x->run.progress =
+        !x->options.quiet && !x->options.watch && !x->options.console && isatty(STDERR_FILENO) == 1;
     if (x->options.vcd != NULL && ps_rig_record(&x->rig, x->options.vcd) != 0) {
         return ps_fail(e, (ps_place){x->options.vcd, 0}, "%s", strerror(errno));
     }
@@ -89,7 +128,15 @@ static int write_report(session *x)
 
 static int finish(session *x)
 {
-    int status = ps_summary(stdout, &x->run, x->options.quiet) ? EXIT_PASS : EXIT_FAILED;
+    bool left = x->console.left; /* nothing was run to its end, so nothing is judged */
+    if (x->options.console) {
+        ps_console_close(&x->console);
+    }
+    int status = left || ps_summary(stdout, &x->run, x->options.quiet) ? EXIT_PASS : EXIT_FAILED;
+    if (x->options.can != NULL && ps_can_close(&x->can) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.can);
+        status = EXIT_UNUSABLE;
+    }
     if (x->run.csv != NULL && ps_csv_close(&x->csv) != 0) {
         (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.csv);
         status = EXIT_UNUSABLE;
@@ -135,6 +182,7 @@ int main(int argc, char **argv)
     } else if (load(x, argv[0], &error) != 0 || prepare(x, &error) != 0) {
         (void)fprintf(stderr, "%s\n", error.text);
     } else {
+        open_console(x);
         ps_run_all(&x->run);
         status = finish(x);
     }

@@ -66,11 +66,12 @@ static int take_report(ps_options *o, const char *text, int i, ps_error *e)
     return 0;
 }
 
-static int take_later(ps_options *o, const char *text, int i, ps_error *e)
+static int take_can(ps_options *o, const char *text, int i, ps_error *e)
 {
-    (void)o;
-    (void)text;
-    return usage(e, "command line", i, "--can is not supported yet");
+    (void)i;
+    (void)e;
+    o->can = text;
+    return 0;
 }
 
 static const struct {
@@ -79,7 +80,7 @@ static const struct {
 } options[] = {
     {"--duration", take_duration}, {"--current", take_current}, {"--csv", take_csv},
     {"--seed", take_seed},         {"--set", take_set},         {"--vcd", take_vcd},
-    {"--report", take_report},     {"--can", take_later},
+    {"--report", take_report},     {"--can", take_can},
 };
 
 static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e)
@@ -105,6 +106,8 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
             o->list = true;
         } else if (strcmp(argv[i], "--watch") == 0) {
             o->watch = true;
+        } else if (strcmp(argv[i], "--console") == 0) {
+            o->console = true;
         } else if (strcmp(argv[i], "--help") == 0) {
             o->help = true;
         } else if (argv[i][0] == '-') {
@@ -119,6 +122,9 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
     }
     if (o->scenario == NULL && !o->list && !o->help) {
         return usage(e, "command line", 0, "no scenario (see packsim --help)");
+    }
+    if (o->console && o->watch) {
+        return usage(e, "--console", 0, "--watch wants the terminal too");
     }
     return 0;
 }
@@ -137,8 +143,9 @@ void ps_options_help(FILE *to)
 {
     (void)fputs(
         "packsim SCENARIO.ini [--duration T] [--current FILE.csv] [--csv FILE]\n"
-        "        [--report FILE.html] [--vcd FILE] [--seed N]"
-        " [--set SECTION.KEY=VALUE]... [--watch] [--quiet]\n"
+        "        [--report FILE.html] [--can DEST] [--vcd FILE] [--seed N]"
+        " [--set SECTION.KEY=VALUE]...\n"
+        "        [--watch | --console] [--quiet]\n"
         "packsim --list\n"
         "\n"
         "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, "
@@ -146,6 +153,12 @@ void ps_options_help(FILE *to)
         "of one of the scenarios that --list shows. Times carry a unit: us, ms, s, min, h.\n"
         "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing "
         "simulated.\n"
+        "--can: what the firmware sends on CAN; DEST is a file (log in the format of candump) or a SocketCAN "
+        "interface.\n"
+        "--console: the firmware's console. On a terminal in real time, without end (but --duration), Ctrl-] "
+        "leaves without\n"
+        "a judgement; from a pipe or file as fast as it can, where a line \"@TIME COMMAND\" is typed at that "
+        "time.\n"
         "--duration beyond or short of the scenario's own: expectations that look beyond a shortened run are "
         "left out.\n"
         "\n"

@@ -13,11 +13,11 @@
 
 typedef struct ps_options {
     const char *scenario;
-    const char *csv, *vcd, *report;
+    const char *csv, *vcd, *report, *can;
     const char *set[PS_SETS];
     int sets;
     ps_override override;
-    bool quiet, watch, list, help;
+    bool quiet, watch, console, list, help;
 } ps_options;
 
 /** 0, or -1 with the error recorded (as --OPTION:ARGUMENT NUMBER: reason). */

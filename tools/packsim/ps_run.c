@@ -189,14 +189,27 @@ static uint64_t next_stop(const ps_run *u)
     if (rows_wanted(u)) {
         stop = earlier(stop, u->next_row);
     }
+    if (u->console != NULL) {
+        stop = earlier(stop, ps_rig_now(u->rig) + PS_CONSOLE_STEP);
+    }
     return u->next_event < s->events ? earlier(stop, s->event[u->next_event].t) : stop;
+}
+
+/* Keys for the next pass. False: the user has left. */
+static bool keys(ps_run *u, uint64_t now)
+{
+    if (u->console == NULL) {
+        return true;
+    }
+    ps_console_turn(u->console, now, bq_console_idle(&u->rig->fw.firmware.console));
+    return !u->console->left;
 }
 
 static void loop(ps_run *u)
 {
     ps_rig *r = u->rig;
     uint64_t now = ps_rig_now(r), idle = 0;
-    for (;;) {
+    while (keys(u, now)) {
         uint64_t hint = turn(u, now);
         int found = r->afe.ops->modules_found(r->afe.ctx);
         u->found = found > u->found ? found : u->found;

@@ -6,6 +6,7 @@
 #ifndef PS_RUN_H
 #define PS_RUN_H
 
+#include "ps_console.h"
 #include "ps_csv.h"
 #include "ps_judge.h"
 #include "ps_report.h"
@@ -14,10 +15,11 @@
 typedef struct ps_run {
     ps_rig *rig;
     ps_judge *judge;
-    ps_csv *csv;       /**< NULL = no table */
-    ps_report *report; /**< NULL = none */
-    bool watch;        /**< live view on standard error */
-    bool progress;     /**< a line on standard error */
+    ps_csv *csv;         /**< NULL = no table */
+    ps_report *report;   /**< NULL = none */
+    ps_console *console; /**< NULL = nobody types */
+    bool watch;          /**< live view on standard error */
+    bool progress;       /**< a line on standard error */
     /* results */
     int found;             /**< most devices found */
     uint64_t scans;        /**< complete updates */

@@ -93,6 +93,31 @@ good | sed 's/^\[load\]/[load]\n/; s/^current_a.*//; /^6 s/a 7 s = spi flip 0.00
 "$packsim" noisy.ini --csv d.csv --quiet >/dev/null
 cmp -s c.csv d.csv || fail "random faults do not repeat"
 
+# what the firmware sends on CAN, in the format of candump
+"$packsim" good.ini --can can.log --quiet >out 2>err || fail "--can: exit status $?: $(cat out err)"
+bad=$(grep -vcE '^\([0-9]{10}\.[0-9]{6}\) can0 10[0-9]#([0-9A-F]{2}){8}$' can.log)
+[ "$bad" = 0 ] || fail "--can: $bad lines are none of candump"
+head -1 can.log | grep -q '^(0000000000.000000) can0 109#0104' || fail "--can: no boot frame first: $(head -1 can.log)"
+beats=$(grep -c ' 100#' can.log)
+[ "$beats" -ge 119 ] && [ "$beats" -le 122 ] || fail "--can: $beats heartbeats in 12 s"
+grep -q ' 100#033FFF00' can.log || fail "--can: no heartbeat of a pack that is on"
+[ "$(grep ' 106#00' can.log | tail -1 | cut -d'#' -f2 | cut -c13-16)" = E40C ] || fail "--can: cell 3 is not at 3300 mV"
+"$packsim" good.ini --can /dev/full --quiet >out 2>err
+[ $? -eq 2 ] || fail "--can to a full disk: exit status $?"
+grep -q '^/dev/full:0: cannot be written' err || fail "--can to a full disk: $(cat err)"
+
+# the console from a pipe: each line when the one before it is answered, or at its time; then the summary
+printf '@5s status\nbalance off\n@6s balance\n@7s reset\n@11s version' |
+    "$packsim" good.ini --console >out 2>err || fail "--console: exit status $?: $(cat out err)"
+for row in 'state     on for [0-9.]* s' 'uptime    5\.0 s' '> balance off' 'forbidden, cells that bleed: 0' \
+    'outputs off, then reset' 'reset by  software, image 00000000 ok, stack left 0' 'result: pass'; do
+    grep -q "^$row\$" out || fail "--console: no row '$row' in: $(cat out)"
+done
+[ "$(grep -c '^bqhost ' out)" = 3 ] || fail "--console: greeting at start and after the reset, version once"
+grep -q "$(printf '\r')" out && fail "--console: carriage returns in a pipe"
+"$packsim" good.ini --console </dev/null >out 2>err || fail "--console without input: exit status $?"
+[ "$(tail -1 out)" = "result: pass" ] || fail "--console without input: ends with $(tail -1 out)"
+
 # an expectation that cannot hold ends with 1 and says so
 good | sed 's/^no faults/state fault at 10 s/' >failing.ini
 "$packsim" failing.ini --quiet >out 2>err
@@ -185,7 +210,9 @@ option_refused 'not a time' good.ini --duration 10
 option_refused 'not a whole number' good.ini --seed x
 option_refused 'more than one' good.ini good.ini
 option_refused 'no scenario' --quiet
-option_refused 'not supported yet' good.ini --can x
+option_refused 'No such file or directory' good.ini --can nowhere/can.log
+option_refused 'not supported by protocol\|not permitted\|No such device' good.ini --can lo # an interface, but none of CAN
+option_refused 'wants the terminal too' good.ini --console --watch
 option_refused 'nowhere.csv' good.ini --current nowhere.csv
 option_refused 'No such file' good.ini --csv nowhere/a.csv
 

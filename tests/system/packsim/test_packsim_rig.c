@@ -107,6 +107,24 @@ static void test_reset_releases_the_pins_and_forgets_everything(void)
     TEST_ASSERT_TRUE(ps_rig_outputs_on(&b->rig));
 }
 
+/* A watchdog of one second would not bite, and the firmware may ask for its own restart. */
+static void test_the_watchdog_is_fed_and_a_reset_can_be_asked_for(void)
+{
+    build("");
+    run_until(10 * PS_S);
+    TEST_ASSERT_GREATER_THAN(0, b->rig.fed_gap);
+    TEST_ASSERT_LESS_OR_EQUAL(300 * PS_MS, b->rig.fed_gap);
+    TEST_ASSERT_FALSE(ps_rig_reset_asked(&b->rig));
+    b->rig.fw.firmware.target.reset = true; /* as the console's command does */
+    run_until(11 * PS_S);
+    TEST_ASSERT_FALSE(ps_rig_outputs_on(&b->rig));
+    TEST_ASSERT_TRUE(ps_rig_reset_asked(&b->rig));
+    TEST_ASSERT_EQUAL(BQ_RESET_SOFTWARE, b->rig.boot.cause);
+    TEST_ASSERT_EQUAL(BQ_PACK_INIT, bq_app_pack(&b->rig.fw.firmware.app)->state);
+    run_until(20 * PS_S); /* the request stays */
+    TEST_ASSERT_TRUE(ps_rig_outputs_on(&b->rig));
+}
+
 static void test_wires_belong_to_the_device_that_measures_the_cell(void)
 {
     build(""); /* 14 cells on 3 devices: 5, 5, 4 */
@@ -221,6 +239,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_current_flows_only_through_a_closed_or_welded_contactor);
     RUN_TEST(test_reset_releases_the_pins_and_forgets_everything);
+    RUN_TEST(test_the_watchdog_is_fed_and_a_reset_can_be_asked_for);
     RUN_TEST(test_wires_belong_to_the_device_that_measures_the_cell);
     RUN_TEST(test_world_actions_reach_the_chips);
     RUN_TEST(test_truth_is_that_of_the_moment_asked_for);

@@ -30,7 +30,7 @@ static void test_greeting_and_prompt(void)
 {
     terminal_restart(&t, true);
     terminal_settle(&t);
-    TEST_ASSERT_EQUAL_STRING("bqhost " PROJECT_VERSION " fake-board\r\n> ", t.text);
+    TEST_ASSERT_EQUAL_STRING("\r\nbqhost " PROJECT_VERSION " fake-board\r\n> ", t.text);
     TEST_ASSERT_TRUE(bq_console_idle(&t.console));
 }
 
