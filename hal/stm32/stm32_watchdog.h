@@ -7,7 +7,7 @@
 #ifndef STM32_WATCHDOG_H
 #define STM32_WATCHDOG_H
 
-/** Starts it. Blocks for some periods of the internal oscillator, about 1 ms at most (bounded by a count). */
+/** Starts it. Blocks for some periods of the internal oscillator, below 1 ms; bounded by a count to 10 ms. */
 void stm32_watchdog_start(void);
 void stm32_watchdog_feed(void);
 
