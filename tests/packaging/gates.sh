@@ -50,7 +50,7 @@ gate_words() {
 
 # The include arrows of docs/design.md. A quoted name without a folder means a private header beside the file.
 gate_arrows() {
-    rooms '*.[ch]' include src drivers hal sim | while read -r f; do
+    rooms '*.[ch]' include src drivers hal sim tools/emulator | while read -r f; do
         code "$f" | awk -v file="$f" '
             function wrong(reason) { print file ":" NR ": includes " name ": " reason }
             function beside(    found) {
@@ -83,6 +83,11 @@ gate_arrows() {
                 if (name ~ /\.\./) { wrong("climbs out of its room"); next }
                 if (file ~ /^sim\//) {
                     if (quoted ? !beside() : name !~ /^[a-z0-9_]+\.h$/) wrong("the simulator knows nothing of the other rooms")
+                    next
+                }
+                if (file ~ /^tools\/emulator\//) {
+                    if (ours || (quoted ? !beside() && name != "sim_misuse.h" : name !~ /^(unicorn\/)?[a-z0-9_]+\.h$/))
+                        wrong("the emulator knows the reference manuals and nothing of what it runs")
                     next
                 }
                 if (file ~ /^hal\//) {

@@ -10,7 +10,7 @@ spdx='/* SPDX-License-Identifier: Apache-2.0 */'
 
 fresh() {
     rm -rf "$tree"
-    for d in include/bqhost src/core src/pack src/app drivers/bq76pl536 hal/sim hal/template sim tests/unit tools \
+    for d in include/bqhost src/core src/pack src/app drivers/bq76pl536 hal/sim hal/template sim tests/unit tools tools/emulator \
         hal/stm32 hal/stm32f0 hal/stm32f4 hal/boards/b; do
         mkdir -p "$tree/$d"
     done
@@ -31,6 +31,8 @@ fresh() {
     put sim/sim_chip.c '#include "sim_chip.h"'
     put tests/unit/t.c 'TEST_ASSERT_EQUAL(1, 1);' '/* TEST_ASSERT_SAME */'
     put tools/t.c '#include "sim_chip.h"'
+    put tools/emulator/emu.h '#include "sim_misuse.h"'
+    put tools/emulator/emu.c '#include "emu.h"' '#include <unicorn/unicorn.h>'
     echo 'See [the tool](tools/t.c#top) and [the web](https://example.com).' >"$tree/README.md"
 }
 
@@ -72,6 +74,8 @@ put include/bqhost/crc.h 'void free(void *);';              red words include/bq
 put sim/sim_chip.c '#include "bqhost/crc.h"';               red arrows sim/sim_chip.c:2 'the simulator includes a public header'
 put sim/sim_chip.c '#include <bqhost/crc.h>';               red arrows sim/sim_chip.c:2 'the same in angle brackets'
 put sim/sim_chip.c '#include "../src/core/core.h"';         red arrows sim/sim_chip.c:2 'the simulator climbs out'
+put tools/emulator/emu.c '#include "stm32_chip.h"';        red arrows tools/emulator/emu.c:2 'the emulator knows a back-end'
+put tools/emulator/emu.c '#include "bqhost/crc.h"';        red arrows tools/emulator/emu.c:2 'the emulator includes a public header'
 put src/core/crc.c '#include "sim_chip.h"';                 red arrows src/core/crc.c:2 'the library includes the simulator'
 put src/core/crc.c '#include "bqhost/hal.h"';               red arrows src/core/crc.c:2 'the core knows the board'
 put src/core/crc.c '#include <stdio.h>';                    red arrows src/core/crc.c:2 'the library wants a big C library'
