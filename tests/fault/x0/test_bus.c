@@ -85,6 +85,35 @@ static void test_flipped_bits_never_show_as_values(void)
     rig_clean();
 }
 
+/* A part that holds the clock: tolerated up to the bound of the back-end, an error beyond, over when it is
+ * over. */
+/* proves: X0-I2C-23, X0-AMB-89 */
+static void test_a_part_that_stretches_the_clock(void)
+{
+    static const char *const name[] = {"bq7692000", "bq7693003", "bq7694006"};
+    for (unsigned p = 0; p < 3u; p++) {
+        for (uint32_t us = 100; us <= 9000u; us += 890u) {
+            rig_up(name[p], 5u * (p + 1u));
+            sim_x0_bus(&rig.chip)->stretch_us = us;
+            for (unsigned n = 0; n < 12u; n++) {
+                TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan());
+                rig_wait_ms(250);
+            }
+            TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 1));
+            TEST_ASSERT_TRUE(sim_x0_chg(&rig.chip) && sim_x0_dsg(&rig.chip));
+            TEST_ASSERT_EQUAL_HEX16(0, rig_faults());
+        }
+        sim_x0_bus(&rig.chip)->stretch_us = 20000u;
+        TEST_ASSERT_EQUAL_INT(BQ_E_TIMEOUT, rig_scan());
+        TEST_ASSERT_TRUE((rig_faults() & BQ_F_COMM) != 0u);
+        TEST_ASSERT_EQUAL_HEX8(0, rig.cells[0].quality & BQ_Q_VALID);
+        sim_x0_bus(&rig.chip)->stretch_us = 0;
+        rig_pass(1500);
+        TEST_ASSERT_EQUAL_HEX16(0, rig_faults());
+        rig_clean();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -92,5 +121,6 @@ int main(void)
     RUN_TEST(test_stuck_data_line);
     RUN_TEST(test_silence_and_return_of_the_supply);
     RUN_TEST(test_flipped_bits_never_show_as_values);
+    RUN_TEST(test_a_part_that_stretches_the_clock);
     return UNITY_END();
 }
