@@ -75,32 +75,33 @@ typedef enum bq_app_job {
 
 /** One super-loop. Caller-owned; use the functions below to read it. */
 typedef struct bq_app {
-    /* private */
-    bq_app_config config;
-    bq_afe afe;
-    bq_gpio gpio;
-    bq_clock clock;
-    bq_ammeter ammeter;
-    bq_sample sample;
-    bq_pack pack;
-    bq_pack_input input;
-    bq_action action, applied;
-    bq_app_counters counters;
+    /* private; small members first: only what lies near the beginning is one instruction away on a Cortex-M0
+     */
+    bool pausing; /* retry_ms is the begin of a pause */
+    bool copied;  /* the picture for the next step was copied: the step is due */
+    bool scan_due, scan_ended, apply_due, step_now;
+    bool scanned; /* a scan has succeeded since the monitor is up */
+    bool asleep;
+    bool line_on, line_failed, mismatch, mismatch_told, current_seen;
     bq_app_job job;
     uint32_t last_us, rest_us, now_ms;  /* software-extended time */
     uint32_t period_us, tick_us;        /* when the present period began */
     uint32_t step_us, step_ms;          /* last pack step */
     uint32_t wait_us;                   /* hint of the running job */
     uint32_t job_ms, retry_ms, scan_ms; /* job began, last retryable failure, last good scan */
+    uint32_t copied_ms;                 /* when that picture was copied */
     uint32_t current_age_ms, mismatch_ms;
     int32_t current_ma;
-    bool pausing;       /* retry_ms is the begin of a pause */
-    uint32_t copied_ms; /* when the picture for the next step was copied */
-    bool copied;        /* and that it was: the step is due */
-    bool scan_due, scan_ended, apply_due, step_now;
-    bool scanned; /* a scan has succeeded since the monitor is up */
-    bool asleep;
-    bool line_on, line_failed, mismatch, mismatch_told, current_seen;
+    bq_afe afe;
+    bq_clock clock;
+    bq_gpio gpio;
+    bq_ammeter ammeter;
+    bq_pack_input input;
+    bq_action action, applied;
+    bq_app_counters counters;
+    bq_sample sample;
+    bq_app_config config;
+    bq_pack pack;
 } bq_app;
 
 /**

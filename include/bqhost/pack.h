@@ -210,24 +210,24 @@ typedef struct bq_pack_summary {
 
 /** One pack controller, about 1.6 KB. Caller-owned; read any field, write none. */
 typedef struct bq_pack {
-    bq_pack_config config;
     bq_pack_state_id state;
-    uint32_t state_ms; /**< `now_ms` at which the state was entered */
-    uint32_t faults;   /**< bit n = bq_pack_fault n is active */
-    bq_pack_fault_record fault[BQ_FAULT_COUNT];
-    bq_pack_summary summary;
-    bq_soc soc;
-    bq_pack_event events[BQ_PACK_EVENTS];
+    bool stepped, have_sequence, started, resting, balancing, outputs_on, drive_charge,
+        drive_discharge;  /* private */
+    uint16_t duty;        /* private */
+    uint32_t state_ms;    /**< `now_ms` at which the state was entered */
+    uint32_t faults;      /**< bit n = bq_pack_fault n is active */
     uint32_t event_count; /**< events ever logged, wraps; the newest is at (event_count - 1) %
                                BQ_PACK_EVENTS */
+    uint32_t last_ms, sequence, copy_age_ms, sequence_age_ms, rest_ms; /* private */
+    bq_pack_summary summary;
+    bq_soc soc;
+    bq_pack_config config;
+    bq_pack_fault_record fault[BQ_FAULT_COUNT];
+    bq_pack_event events[BQ_PACK_EVENTS];
     /* private */
-    uint32_t last_ms, sequence, copy_age_ms, sequence_age_ms;
+    uint32_t cell_seen[BQ_MASK_WORDS], sensor_seen[BQ_PACK_MAX_SENSORS / 32u];
     uint32_t blind_ms[BQ_PACK_MAX_MODULES];
     uint16_t flags[BQ_PACK_MAX_MODULES];
-    uint32_t cell_seen[BQ_MASK_WORDS], sensor_seen[BQ_PACK_MAX_SENSORS / 32u];
-    uint32_t rest_ms;
-    uint16_t duty;
-    bool stepped, have_sequence, started, resting, balancing, outputs_on, drive_charge, drive_discharge;
 } bq_pack;
 
 /**

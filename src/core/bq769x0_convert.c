@@ -37,9 +37,9 @@ bq_status bq769x0_ts_ohms(uint16_t code, uint32_t *ohms)
 
 int16_t bq769x0_die_dc(uint16_t code, uint32_t v25_uv)
 {
-    int32_t below_uv = (int32_t)v25_uv - 382 * (int32_t)code;
-    int32_t half = below_uv < 0 ? -210 : 210;
-    return (int16_t)(250 + (below_uv + half) / 420);
+    /* 4.2 mV/K; counted from far below, so that the number that is divided is positive */
+    uint32_t above_uv = v25_uv + 62000u * 420u - 382u * code;
+    return (int16_t)((int32_t)((above_uv + 210u) / 420u) - 62000 + 250);
 }
 
 uint32_t bq769x0_bat_mv(bq769x0_trim trim, uint16_t code, uint8_t inputs)

@@ -2,62 +2,72 @@
 /* The faults: their names, what they forbid, their order, and the way each becomes active and clears. */
 #include "pack_internal.h"
 
-typedef struct fault_rule {
-    const char *name;
-    uint8_t rank;      /* 0 = shown first */
-    bool stops_charge; /* with separate paths; with one contactor every fault stops both */
-    bool stops_discharge;
-    bool latched; /* clears only while the request is off */
-} fault_rule;
-
-/* clang-format off */
-static const fault_rule rules[BQ_FAULT_COUNT] = {
-    /*                           name           rank charge discharge latched */
-    [BQ_FAULT_CHIP] =          { "chip",           0, true,  true,  false },
-    [BQ_FAULT_CONTACTOR] =     { "contactor",      1, true,  true,  true  },
-    [BQ_FAULT_OVERCURRENT] =   { "overcurrent",    2, true,  true,  false },
-    [BQ_FAULT_CHIP_CELL_OV] =  { "chip_cell_ov",   3, true,  false, false },
-    [BQ_FAULT_CELL_OV] =       { "cell_ov",        4, true,  false, false },
-    [BQ_FAULT_CHIP_OVERTEMP] = { "chip_overtemp",  5, true,  true,  false },
-    [BQ_FAULT_OVERTEMP] =      { "overtemp",       6, true,  true,  false },
-    [BQ_FAULT_CHIP_CELL_UV] =  { "chip_cell_uv",   7, false, true,  false },
-    [BQ_FAULT_CELL_UV] =       { "cell_uv",        8, false, true,  false },
-    [BQ_FAULT_UNDERTEMP] =     { "undertemp",      9, true,  false, false },
-    [BQ_FAULT_OPEN_WIRE] =     { "open_wire",     10, true,  true,  false },
-    [BQ_FAULT_COMM_LOSS] =     { "comm_loss",     11, true,  true,  false },
-    [BQ_FAULT_NO_READING] =    { "no_reading",    12, true,  true,  false },
-    [BQ_FAULT_SENSOR] =        { "sensor",        13, true,  true,  false },
-    [BQ_FAULT_SELF_TEST] =     { "self_test",     14, true,  true,  false },
-    [BQ_FAULT_CONFIG] =        { "config",        15, true,  true,  false },
-    [BQ_FAULT_IMBALANCE] =     { "imbalance",     16, true,  true,  false },
+static const char *const names[BQ_FAULT_COUNT] = {
+    [BQ_FAULT_CELL_OV] = "cell_ov",
+    [BQ_FAULT_CELL_UV] = "cell_uv",
+    [BQ_FAULT_OVERTEMP] = "overtemp",
+    [BQ_FAULT_UNDERTEMP] = "undertemp",
+    [BQ_FAULT_IMBALANCE] = "imbalance",
+    [BQ_FAULT_COMM_LOSS] = "comm_loss",
+    [BQ_FAULT_CHIP] = "chip",
+    [BQ_FAULT_CHIP_CELL_OV] = "chip_cell_ov",
+    [BQ_FAULT_CHIP_CELL_UV] = "chip_cell_uv",
+    [BQ_FAULT_CHIP_OVERTEMP] = "chip_overtemp",
+    [BQ_FAULT_OPEN_WIRE] = "open_wire",
+    [BQ_FAULT_SENSOR] = "sensor",
+    [BQ_FAULT_SELF_TEST] = "self_test",
+    [BQ_FAULT_CONFIG] = "config",
+    [BQ_FAULT_CONTACTOR] = "contactor",
+    [BQ_FAULT_NO_READING] = "no_reading",
+    [BQ_FAULT_OVERCURRENT] = "overcurrent",
 };
-/* clang-format on */
+
+/* Shown first: loss of protection, then hazards of the cells, then loss of information. */
+static const uint8_t order[BQ_FAULT_COUNT] = {
+    BQ_FAULT_CHIP,       BQ_FAULT_CONTACTOR,     BQ_FAULT_OVERCURRENT, BQ_FAULT_CHIP_CELL_OV,
+    BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,    BQ_FAULT_CHIP_CELL_UV,
+    BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,   BQ_FAULT_COMM_LOSS,
+    BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,   BQ_FAULT_CONFIG,
+    BQ_FAULT_IMBALANCE,
+};
+
+/* With separate paths these leave a direction as it is; all others stop both. */
+#define BIT(fault) ((uint32_t)1u << (fault))
+#define SPARES_CHARGE (BIT(BQ_FAULT_CELL_UV) | BIT(BQ_FAULT_CHIP_CELL_UV))
+#define SPARES_DISCHARGE (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CHIP_CELL_OV) | BIT(BQ_FAULT_UNDERTEMP))
+/* These clear only while the request is off. */
+#define LATCHED BIT(BQ_FAULT_CONTACTOR)
 
 const char *bq_pack_fault_name(bq_pack_fault fault)
 {
-    return (unsigned)fault < BQ_FAULT_COUNT ? rules[fault].name : "?";
+    return (unsigned)fault < BQ_FAULT_COUNT ? names[fault] : "?";
 }
 
 bool bq_pack_fault_stops_charge(bq_pack_fault fault)
 {
-    return (unsigned)fault < BQ_FAULT_COUNT && rules[fault].stops_charge;
+    return (unsigned)fault < BQ_FAULT_COUNT && (BIT(fault) & SPARES_CHARGE) == 0u;
 }
 
 bool bq_pack_fault_stops_discharge(bq_pack_fault fault)
 {
-    return (unsigned)fault < BQ_FAULT_COUNT && rules[fault].stops_discharge;
+    return (unsigned)fault < BQ_FAULT_COUNT && (BIT(fault) & SPARES_DISCHARGE) == 0u;
+}
+
+bool bq_pack_stops(const bq_pack *p, bool charge)
+{
+    const uint32_t spares = charge ? SPARES_CHARGE : SPARES_DISCHARGE;
+
+    return (p->faults & ~(p->config.separate_paths ? spares : 0u)) != 0u;
 }
 
 bq_pack_fault bq_pack_cause(const bq_pack *p)
 {
-    bq_pack_fault cause = BQ_FAULT_COUNT;
-
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        if (p->fault[f].active && (cause == BQ_FAULT_COUNT || rules[f].rank < rules[cause].rank)) {
-            cause = (bq_pack_fault)f;
+    for (unsigned i = 0; i < BQ_FAULT_COUNT; i++) {
+        if ((p->faults & BIT(order[i])) != 0u) {
+            return (bq_pack_fault)order[i];
         }
     }
-    return cause;
+    return BQ_FAULT_COUNT;
 }
 
 static void trip(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t now_ms)
@@ -75,7 +85,7 @@ static void trip(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t no
     r->sensor = c->sensor;
     r->wire = c->wire;
     r->active = true;
-    p->faults |= (uint32_t)1u << f;
+    p->faults |= BIT(f);
     bq_pack_log(p, now_ms, BQ_EVENT_FAULT, (uint8_t)f,
                 r->cell != 0u     ? r->cell
                 : r->sensor != 0u ? r->sensor
@@ -107,7 +117,7 @@ static bq_pack_hold reason(const bq_pack *p, bq_pack_fault f, const bq_pack_inpu
     if (!p->summary.complete) {
         return BQ_HOLD_UNKNOWN;
     }
-    if (rules[f].latched && in->request != BQ_REQUEST_OFF) {
+    if ((BIT(f) & LATCHED) != 0u && in->request != BQ_REQUEST_OFF) {
         return BQ_HOLD_REQUEST;
     }
     return BQ_HOLD_TIME;
@@ -133,7 +143,7 @@ static void gone(bq_pack *p, bq_pack_fault f, const bq_picture *v, const bq_pack
     if (v->fresh && r->timer_ms >= p->config.recover_ms) {
         r->active = false;
         r->hold = BQ_HOLD_NONE;
-        p->faults &= ~((uint32_t)1u << f);
+        p->faults &= ~BIT(f);
         bq_pack_log(p, now_ms, BQ_EVENT_RECOVERED, (uint8_t)f, 0);
     }
 }

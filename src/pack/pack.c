@@ -119,25 +119,14 @@ static void change_state(bq_pack *p, const bq_pack_input *in, uint32_t now_ms)
     }
 }
 
-/* Some active fault forbids this direction. */
-static bool stopped(const bq_pack *p, bool (*stops)(bq_pack_fault))
-{
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        if (p->fault[f].active && (!p->config.separate_paths || stops((bq_pack_fault)f))) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* In the state "on" both directions conduct. In "fault" one may stay on if it was, never come back. */
 static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
 {
     const bool on = p->state == BQ_PACK_ON;
     const bool may_stay = p->state == BQ_PACK_FAULT && in->request == BQ_REQUEST_ON;
 
-    p->drive_charge = on || (may_stay && p->drive_charge && !stopped(p, bq_pack_fault_stops_charge));
-    p->drive_discharge = on || (may_stay && p->drive_discharge && !stopped(p, bq_pack_fault_stops_discharge));
+    p->drive_charge = on || (may_stay && p->drive_charge && !bq_pack_stops(p, true));
+    p->drive_discharge = on || (may_stay && p->drive_discharge && !bq_pack_stops(p, false));
     p->outputs_on = p->drive_charge || p->drive_discharge;
     a->charge_on = p->drive_charge;
     a->discharge_on = p->drive_discharge;

@@ -28,7 +28,7 @@ typedef struct bq_picture {
 typedef struct bq_condition {
     bool broken;          /* present */
     bool clear;           /* gone, hysteresis included */
-    uint32_t debounce_ms; /* how long it must be present */
+    uint16_t debounce_ms; /* how long it must be present */
     int32_t value;
     uint16_t cell;
     uint8_t device, sensor;
@@ -47,7 +47,8 @@ void bq_pack_judge(const bq_pack *p, const bq_picture *v, const bq_pack_input *i
 /* faults.c: debounce, record, recover. */
 void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_pack_input *in, const bq_condition *c,
                            uint32_t now_ms, uint32_t dt_ms);
-bool bq_pack_pending(const bq_pack *p); /* some cause is present */
+bool bq_pack_stops(const bq_pack *p, bool charge); /* an active fault forbids this direction */
+bool bq_pack_pending(const bq_pack *p);            /* some cause is present */
 
 /* balance.c: fills a->balance. */
 void bq_pack_balance(bq_pack *p, const bq_picture *v, const bq_pack_input *in, uint32_t dt_ms, bq_action *a);

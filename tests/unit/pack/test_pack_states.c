@@ -361,6 +361,7 @@ static void test_the_cause_is_the_most_serious_active_fault(void)
     TEST_ASSERT_EQUAL(BQ_FAULT_COUNT, bq_pack_cause(&r.p));
     for (int i = n - 1; i >= 0; i--) { /* one more serious fault after the other joins */
         r.p.fault[order[i]].active = true;
+        r.p.faults |= (uint32_t)1 << order[i];
         TEST_ASSERT_EQUAL(order[i], bq_pack_cause(&r.p));
     }
 }
