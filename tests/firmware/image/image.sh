@@ -22,7 +22,7 @@ limits() { # flash and RAM in bytes
     lv-f072) echo 40960 8192 ;;
     lv-f072-clang) echo 44032 8192 ;;
     f072-nvm) echo 16384 4096 ;;
-    hv-f405*) echo 49152 20480 ;;
+    hv-f405* | f405-afe) echo 49152 20480 ;;
     *) echo 0 0 ;;
     esac
 }
