@@ -279,9 +279,10 @@ static void frame_sent(emu_periph *p)
     emu_can *s = emu_can_of(p);
     emu_can_mailbox *m = &s->mb[s->sending];
     emu_can_frame f = frame_of(m);
-    emu_can_result r = put_on_wire(p, &f);
+    emu_can_result r;
 
-    s->sending = -1;
+    s->sending = -1; /* the world may look around */
+    r = put_on_wire(p, &f);
     if (r != EMU_CAN_ACKED) {
         tx_failed(p, m, r);
         return;

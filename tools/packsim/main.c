@@ -87,6 +87,9 @@ static int prepare(session *x, ps_error *e)
     if (attach(x, e) != 0) {
         return -1;
     }
+    x->rig.player = x->options.image != NULL ? &ps_image : &ps_native;
+    x->rig.image = x->options.image;
+    x->rig.board = x->options.board;
     if (ps_rig_init(&x->rig, &x->scenario, e) != 0) {
         return -1;
     }
@@ -98,6 +101,12 @@ static int prepare(session *x, ps_error *e)
         !x->options.quiet && !x->options.watch && !x->options.console && isatty(STDERR_FILENO) == 1;
     if (x->options.vcd != NULL && ps_rig_record(&x->rig, x->options.vcd) != 0) {
         return ps_fail(e, (ps_place){x->options.vcd, 0}, "%s", strerror(errno));
+    }
+    if (x->options.decisions != NULL) {
+        x->run.decisions = fopen(x->options.decisions, "w");
+        if (x->run.decisions == NULL) {
+            return ps_fail(e, (ps_place){x->options.decisions, 0}, "%s", strerror(errno));
+        }
     }
     if (x->options.csv != NULL) {
         if (ps_csv_open(&x->csv, x->options.csv, x->scenario.cells) != 0) {
@@ -135,6 +144,10 @@ static int finish(session *x)
     int status = left || ps_summary(stdout, &x->run, x->options.quiet) ? EXIT_PASS : EXIT_FAILED;
     if (x->options.can != NULL && ps_can_close(&x->can) != 0) {
         (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.can);
+        status = EXIT_UNUSABLE;
+    }
+    if (x->run.decisions != NULL && fclose(x->run.decisions) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.decisions);
         status = EXIT_UNUSABLE;
     }
     if (x->run.csv != NULL && ps_csv_close(&x->csv) != 0) {
@@ -181,6 +194,7 @@ int main(int argc, char **argv)
         status = list(argv[0]);
     } else if (load(x, argv[0], &error) != 0 || prepare(x, &error) != 0) {
         (void)fprintf(stderr, "%s\n", error.text);
+        (void)ps_rig_close(&x->rig);
     } else {
         open_console(x);
         ps_run_all(&x->run);

@@ -158,7 +158,7 @@ static void finish(ps_verdict *v, const ps_expect *x, const ps_totals *z)
         decide(v, z->misuse == 0, "%lu times", z->misuse);
         break;
     case PS_EXP_SPEED:
-        decide(v, z->speed > x->value, "%.0f", z->speed);
+        decide(v, z->speed < 0.0 || z->speed > x->value, "%.0f", z->speed);
         break;
     default:
         decide(v, false, "never looked at");

@@ -25,7 +25,7 @@ typedef struct ps_totals {
     double measurement_mv; /**< worst; negative = nothing was measured */
     double soc_percent;    /**< worst; negative = the firmware had no state of charge */
     unsigned long misuse;
-    double speed;
+    double speed; /**< negative = nobody promised one: an image takes what the emulator takes */
 } ps_totals;
 
 typedef struct ps_fault_seen {

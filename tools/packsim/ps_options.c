@@ -66,6 +66,30 @@ static int take_report(ps_options *o, const char *text, int i, ps_error *e)
     return 0;
 }
 
+static int take_decisions(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->decisions = text;
+    return 0;
+}
+
+static int take_image(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->image = text;
+    return 0;
+}
+
+static int take_board(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->board = text;
+    return 0;
+}
+
 static int take_can(ps_options *o, const char *text, int i, ps_error *e)
 {
     (void)i;
@@ -80,7 +104,8 @@ static const struct {
 } options[] = {
     {"--duration", take_duration}, {"--current", take_current}, {"--csv", take_csv},
     {"--seed", take_seed},         {"--set", take_set},         {"--vcd", take_vcd},
-    {"--report", take_report},     {"--can", take_can},
+    {"--report", take_report},     {"--can", take_can},         {"--decisions", take_decisions},
+    {"--image", take_image},       {"--board", take_board},
 };
 
 static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e)
@@ -120,6 +145,9 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
             o->scenario = argv[i];
         }
     }
+    if (o->board != NULL && o->image == NULL) {
+        return usage(e, "--board", 0, "needs --image");
+    }
     if (o->scenario == NULL && !o->list && !o->help) {
         return usage(e, "command line", 0, "no scenario (see packsim --help)");
     }
@@ -146,11 +174,17 @@ void ps_options_help(FILE *to)
         "        [--report FILE.html] [--can DEST] [--vcd FILE] [--seed N]"
         " [--set SECTION.KEY=VALUE]...\n"
         "        [--watch | --console] [--quiet]\n"
+        "        [--decisions FILE] [--image FILE.bin [--board lv-f072|hv-f405]]\n"
         "packsim --list\n"
         "\n"
         "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, "
         "or the name\n"
         "of one of the scenarios that --list shows. Times carry a unit: us, ms, s, min, h.\n"
+        "--image runs the firmware image of a board on an emulated microcontroller instead: configured "
+        "through "
+        "its settings,\n"
+        "seen through its pins and CAN. Nobody promises a speed then: \"speed above\" always holds.\n"
+        "--decisions: a line for each change of the state, of a fault and of the outputs.\n"
         "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing "
         "simulated.\n"
         "--can: what the firmware sends on CAN; DEST is a file (log in the format of candump) or a SocketCAN "

@@ -13,7 +13,8 @@
 
 typedef struct ps_options {
     const char *scenario;
-    const char *csv, *vcd, *report, *can;
+    const char *csv, *vcd, *report, *can, *decisions;
+    const char *image, *board; /**< NULL = the native firmware; the board that fits */
     const char *set[PS_SETS];
     int sets;
     ps_override override;

@@ -7,7 +7,6 @@
 
 #define OBSERVE_STEP (4 * PS_MS) /* resolution of balancing times while the bus is busy */
 #define BLED_LATELY (20 * PS_S)  /* without balancing for so long: look only once per world step */
-#define POISON 0xa5
 
 uint64_t ps_rig_now(const ps_rig *r)
 {
@@ -89,6 +88,11 @@ static bool follow(ps_rig *r)
     return true;
 }
 
+void ps_rig_follow(ps_rig *r)
+{
+    r->moved = follow(r) || r->moved;
+}
+
 static uint64_t piece_of(const ps_rig *r, uint64_t most)
 {
     uint64_t due = r->monitor->due != NULL ? r->monitor->due(r) : most;
@@ -144,120 +148,25 @@ const double *ps_rig_truth(const ps_rig *r, uint64_t t)
     return NULL;
 }
 
-/* ---- the firmware ----------------------------------------------------------------------------- */
-
-static bq_status read_ammeter(void *ctx, int32_t *current_ma)
-{
-    ps_rig *r = ctx;
-    *current_ma = (int32_t)lround(ps_rig_current_at(r, ps_rig_now(r)) * 1000.0);
-    return BQ_OK;
-}
-
-static void feed_watchdog(void *ctx)
-{
-    ps_rig *r = ctx;
-    uint64_t gap = ps_rig_now(r) - r->fed_t;
-    r->fed_gap = gap > r->fed_gap ? gap : r->fed_gap;
-    r->fed_t += gap;
-}
-
-/* Carried out when the present pass has returned: ps_rig_sync(). */
-static void ask_reset(void *ctx)
-{
-    ((ps_rig *)ctx)->reset_asked = true;
-}
-
-static uint32_t stack_free(void *ctx)
-{
-    (void)ctx;
-    return 0; /* of a PC nobody knows */
-}
-
-static bq_board board_of(ps_rig *r)
-{
-    static const bq_mcu_ops mcu = {feed_watchdog, ask_reset, stack_free};
-    bq_board board = {0};
-    board.name = "packsim";
-    board.gpio = r->monitor->gpio(r);
-    board.clock = r->monitor->clock(r);
-    if (!r->monitor->measures_current) {
-        board.ammeter = (bq_ammeter){read_ammeter, r};
-    }
-    board.can = r->can;
-    board.console = r->console;
-    board.mcu = (bq_mcu){&mcu, r, &r->boot};
-    return board;
-}
-
-static bq_status boot(ps_rig *r, bq_reset_cause cause)
-{
-    ps_firmware *f = &r->fw;
-    const bq_board board = board_of(r);
-    bq_status status = r->monitor->init(r);
-    if (status != BQ_OK) {
-        return status;
-    }
-    r->boot = (bq_boot){.cause = cause, .image_ok = true};
-    r->reset_asked = false;
-    r->fed_t = ps_rig_now(r);
-    return bq_firmware_init(&f->firmware, &board, &r->s->app, &r->afe, f->cells, SIM_CELLS_MAX, f->temps,
-                            SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
-}
-
-static uint64_t errors_of(const bq_link_stats *s)
-{
-    return (uint64_t)s->crc_errors + s->no_answers + s->implausible + s->bus_errors + s->write_errors;
-}
-
 uint64_t ps_rig_bus_errors(const ps_rig *r)
 {
-    return errors_of(&r->lost) + errors_of(r->afe.ops->stats(r->afe.ctx));
-}
-
-static void keep_stats(ps_rig *r)
-{
-    const bq_link_stats *s = r->afe.ops->stats(r->afe.ctx);
-    r->lost.crc_errors += s->crc_errors;
-    r->lost.no_answers += s->no_answers;
-    r->lost.implausible += s->implausible;
-    r->lost.bus_errors += s->bus_errors;
-    r->lost.write_errors += s->write_errors;
-}
-
-static void ask(ps_rig *r, bool on)
-{
-    r->request = on ? BQ_REQUEST_ON : BQ_REQUEST_OFF;
-    (void)bq_firmware_request(&r->fw.firmware, r->request);
-}
-
-/* Memory as a reset leaves it, pins released, start from the reset vector. What the user asks for stays. */
-static void restart(ps_rig *r, bq_reset_cause cause)
-{
-    keep_stats(r);
-    memset(&r->fw, POISON, sizeof r->fw);
-    r->monitor->release(r);
-    (void)boot(r, cause);
-    (void)bq_firmware_request(&r->fw.firmware, r->request);
-}
-
-bool ps_rig_reset_asked(ps_rig *r)
-{
-    if (!r->reset_asked) {
-        return false;
+    const bq_link_stats *now = r->afe.ops->stats(r->afe.ctx);
+    uint64_t sum = 0;
+    for (int life = 0; life < 2; life++) {
+        const bq_link_stats *s = life == 0 ? &r->lost : now;
+        sum += (uint64_t)s->crc_errors + s->no_answers + s->implausible + s->bus_errors + s->write_errors;
     }
-    restart(r, BQ_RESET_SOFTWARE);
-    return true;
+    return sum;
 }
 
 /* ---- life ------------------------------------------------------------------------------------- */
 
 int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
 {
-    const bq_can can = r->can;
-    const bq_stream console = r->console;
-    memset(r, 0, sizeof *r);
-    r->can = can;
-    r->console = console;
+    const ps_rig old = {
+        .can = r->can, .console = r->console, .player = r->player, .image = r->image, .board = r->board};
+    *r = old;
+    r->player = r->player != NULL ? r->player : &ps_native;
     r->s = s;
     r->monitor = s->part != NULL ? &ps_afe : &ps_stack;
     r->step = s->period < r->monitor->world_step ? s->period : r->monitor->world_step;
@@ -265,12 +174,8 @@ int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
         return ps_fail(e, s->pack_at, "the simulator refuses this pack");
     }
     show(r);
-    bq_status status = boot(r, BQ_RESET_POWER);
-    if (status != BQ_OK) {
-        return ps_fail(e, s->pack_at, "the firmware refuses this configuration (%s)", bq_status_name(status));
-    }
-    ask(r, s->request_on);
-    return 0;
+    r->request = s->request_on ? BQ_REQUEST_ON : BQ_REQUEST_OFF;
+    return r->player->begin(r, e);
 }
 
 int ps_rig_record(ps_rig *r, const char *path)
@@ -285,6 +190,9 @@ int ps_rig_record(ps_rig *r, const char *path)
 
 int ps_rig_close(ps_rig *r)
 {
+    if (r->player != NULL) {
+        r->player->end(r);
+    }
     if (!r->recording) {
         return 0;
     }
@@ -299,10 +207,11 @@ void ps_rig_act(ps_rig *r, const ps_event *v)
 {
     switch (v->kind) {
     case PS_ACT_REQUEST:
-        ask(r, v->on);
+        r->request = v->on ? BQ_REQUEST_ON : BQ_REQUEST_OFF;
+        r->player->request(r);
         return;
     case PS_ACT_MCU_RESET:
-        restart(r, BQ_RESET_PIN);
+        r->player->reset(r);
         return;
     default:
         break;

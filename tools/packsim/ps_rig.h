@@ -74,10 +74,28 @@ typedef struct ps_monitor {
 
 extern const ps_monitor ps_stack, ps_afe;
 
+/** What plays the firmware: compiled natively, or the image of a board in the emulator. */
+typedef struct ps_player {
+    int (*begin)(struct ps_rig *r, ps_error *e);   /**< powers up; 0, or -1 with the error recorded */
+    void (*end)(struct ps_rig *r);                 /**< after ps_rig_init(), also a failed one */
+    uint64_t (*pass)(struct ps_rig *r);            /**< lets it act; ns until it wants to act again */
+    void (*elapse)(struct ps_rig *r, uint64_t ns); /**< lets simulated time pass, or less of it */
+    void (*request)(struct ps_rig *r);             /**< r->request has changed */
+    void (*reset)(struct ps_rig *r);               /**< by the reset pin */
+    bool (*restarted)(struct ps_rig *r);           /**< by itself since this was called last */
+    sim_misuse *(*misuse)(struct ps_rig *r);       /**< of the microcontroller; NULL = it has no judge */
+} ps_player;
+
+extern const ps_player ps_native, ps_image;
+
 typedef struct ps_rig {
     ps_scenario *s;
     const ps_monitor *monitor;
-    ps_firmware fw;
+    const ps_player *player; /**< NULL = ps_native; set before ps_rig_init(), as the next two */
+    const char *image;       /**< file, for ps_image */
+    const char *board;       /**< name; NULL = the one that fits the monitor */
+    struct ps_emulation *emulation;
+    ps_firmware fw; /**< with ps_image: what it has told on CAN, in the shape of the native one */
     bq_afe afe;
     hal_sim hal; /**< a stack ... */
     sim_pl pl;
@@ -85,6 +103,7 @@ typedef struct ps_rig {
     sim_x0 x0;
     uint64_t alert_until; /**< somebody else holds ALERT high until then; UINT64_MAX = nobody */
     bool froze;           /**< adc_freeze has struck */
+    bool stretch;         /**< a slave may stretch the clock now: behind the address */
     sim_cells world;
     sim_vcd vcd;
     bool recording;
@@ -108,12 +127,12 @@ typedef struct ps_rig {
     bq_link_stats lost; /**< of firmware lives that ended in a reset */
 } ps_rig;
 
-/** Builds everything, firmware initialised, simulated time 0. r->can and r->console are kept, all else is
- * new. 0; or -1 with the error recorded. */
+/** Builds everything, firmware initialised, simulated time 0. r->can, r->console and what chooses the player
+ * are kept, all else is new. 0; or -1 with the error recorded. */
 int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e);
 /** Records the host port's lines. 0, or -1 with errno set. */
 int ps_rig_record(ps_rig *r, const char *path);
-/** 0, or -1 if the waveform could not be written. */
+/** Ends what ps_rig_init() began, also a failed one. 0, or -1 if the waveform could not be written. */
 int ps_rig_close(ps_rig *r);
 
 uint64_t ps_rig_now(const ps_rig *r);
@@ -122,6 +141,8 @@ void ps_rig_advance(ps_rig *r, uint64_t ns);
 /** To be called after the firmware ran: brings moved outputs into the world. Returns true when they have
  * moved since the last call; r->moved_t is the moment. */
 bool ps_rig_sync(ps_rig *r);
+/** The same from inside: outputs have moved just now. */
+void ps_rig_follow(ps_rig *r);
 /** True while the contactor line, or any FET, is on. */
 bool ps_rig_outputs_on(const ps_rig *r);
 /** Current that flows at a moment through paths that stand as they do now, and what the load or charger asks
@@ -130,8 +151,6 @@ double ps_rig_current_at(const ps_rig *r, uint64_t t);
 double ps_rig_asked_at(const ps_rig *r, uint64_t t);
 /** To be passed to the back-end: the world moves while the bus is busy. `ctx` is the ps_rig. */
 void ps_rig_advance_hook(void *ctx, uint64_t ns);
-/** Restarts a firmware that has asked for it in its last pass; true if it has. */
-bool ps_rig_reset_asked(ps_rig *r);
 /** Carries out an event. */
 void ps_rig_act(ps_rig *r, const ps_event *v);
 /** Cell voltages in force at a moment; NULL when too long ago. */

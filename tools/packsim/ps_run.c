@@ -14,10 +14,42 @@ static uint64_t wall_ns(void)
     return (uint64_t)t.tv_sec * PS_S + (uint64_t)t.tv_nsec;
 }
 
+static void tell(const ps_run *u, const char *what, const char *name, const char *more)
+{
+    if (u->decisions != NULL) {
+        (void)fprintf(u->decisions, "%.3f %s %s%s\n", (double)ps_rig_now(u->rig) / 1e9, what, name, more);
+    }
+}
+
+static void tell_faults(const ps_run *u, uint32_t changed, uint32_t active)
+{
+    for (unsigned i = 0; i < (unsigned)BQ_FAULT_COUNT; i++) {
+        if ((changed >> i & 1u) != 0u) {
+            tell(u, "fault", bq_pack_fault_name((bq_pack_fault)i),
+                 (active >> i & 1u) != 0u ? " active" : " gone");
+        }
+    }
+}
+
+static void tell_decisions(ps_run *u)
+{
+    int state = (int)bq_app_pack(&u->rig->fw.firmware.app)->state;
+    bool on = ps_rig_outputs_on(u->rig);
+    if (state != u->told_state) {
+        tell(u, "state", bq_pack_state_name((bq_pack_state_id)state), "");
+    }
+    if (on != u->told_outputs) {
+        tell(u, "outputs", on ? "on" : "off", "");
+    }
+    u->told_state = state;
+    u->told_outputs = on;
+}
+
 static void watch_faults(ps_run *u)
 {
     const bq_pack *pack = bq_app_pack(&u->rig->fw.firmware.app);
     uint32_t fresh = pack->faults & ~u->fault_mask;
+    tell_faults(u, pack->faults ^ u->fault_mask, pack->faults);
     u->fault_mask = pack->faults;
     for (int i = 0; fresh != 0u; i++, fresh >>= 1) {
         if ((fresh & 1u) != 0u) {
@@ -153,15 +185,16 @@ static uint64_t turn(ps_run *u, uint64_t now)
 {
     ps_rig *r = u->rig;
     do_events(u, now);
-    uint64_t hint = (uint64_t)bq_firmware_step(&r->fw.firmware) * 1000u;
+    uint64_t hint = r->player->pass(r);
     if (ps_rig_sync(r)) {
         ps_judge_outputs(u->judge, r->moved_t, ps_rig_outputs_on(r));
     }
     if (bq_app_pack(&r->fw.firmware.app)->faults != u->fault_mask) {
         watch_faults(u);
     }
+    tell_decisions(u);
     watch_sample(u);
-    if (ps_rig_reset_asked(r)) {
+    if (r->player->restarted(r)) {
         forget(u);
         hint = 0;
     }
@@ -223,9 +256,15 @@ static void loop(ps_run *u)
         }
         idle = hint == 0 ? idle + 1 : 0;
         uint64_t dt = hint == 0 && idle > IDLE_LIMIT ? 1000u : hint;
-        ps_rig_advance(r, earlier(dt, stop - now));
+        r->player->elapse(r, earlier(dt, stop - now));
         now = ps_rig_now(r);
     }
+}
+
+static unsigned long misuses(ps_rig *r)
+{
+    const sim_misuse *inside = r->player->misuse(r);
+    return r->monitor->misuse(r)->count + (inside != NULL ? inside->count : 0u);
 }
 
 void ps_run_all(ps_run *u)
@@ -241,8 +280,9 @@ void ps_run_all(ps_run *u)
     u->simulated = ps_rig_now(u->rig);
     u->spread_end_mv = sim_cells_spread(&u->rig->world) * 1000.0;
     u->bytes_per_scan = u->bytes_scans > 0 ? (double)u->bytes_sum / (double)u->bytes_scans : 0.0;
-    u->totals.misuse = u->rig->monitor->misuse(u->rig)->count;
-    u->totals.speed = (double)u->simulated / 1e9 / (seconds > 1e-9 ? seconds : 1e-9);
+    u->totals.misuse = misuses(u->rig);
+    u->speed = (double)u->simulated / 1e9 / (seconds > 1e-9 ? seconds : 1e-9);
+    u->totals.speed = u->rig->player == &ps_image ? -1.0 : u->speed;
     ps_judge_end(u->judge, &u->totals);
     if (u->watch) {
         ps_watch_draw(stderr, u->simulated, &u->rig->fw.firmware.app, u->found, 0);

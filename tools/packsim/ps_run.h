@@ -18,6 +18,7 @@ typedef struct ps_run {
     ps_csv *csv;         /**< NULL = no table */
     ps_report *report;   /**< NULL = none */
     ps_console *console; /**< NULL = nobody types */
+    FILE *decisions;     /**< a line for each change of state, faults and outputs; NULL = none */
     bool watch;          /**< live view on standard error */
     bool progress;       /**< a line on standard error */
     /* results */
@@ -25,12 +26,15 @@ typedef struct ps_run {
     uint64_t scans;        /**< complete updates */
     double bytes_per_scan; /**< on the bus, mean from one update to the next */
     ps_totals totals;      /**< misuse and speed are filled at the end */
+    double speed;
     double spread_start_mv, spread_end_mv;
     uint64_t simulated;
     /* private */
     int next_event;
     uint64_t next_row, next_look, next_progress;
     uint32_t fault_mask, sequence;
+    int told_state;
+    bool told_outputs;
     bool seen_sample;
     uint64_t bytes_at_sample, bytes_sum, bytes_scans;
     uint64_t shown_wall_ns;

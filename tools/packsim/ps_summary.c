@@ -52,7 +52,7 @@ static void print_expects(FILE *to, const ps_run *u, bool quiet)
 
 static void print_misuse(FILE *to, const sim_misuse *m)
 {
-    for (uint32_t i = 0; i < m->count && i < SIM_MISUSE_KEPT; i++) {
+    for (uint32_t i = 0; m != NULL && i < m->count && i < SIM_MISUSE_KEPT; i++) {
         const sim_misuse_entry *x = &m->entry[i];
         (void)fprintf(to, "misuse: %.6f s device %d %s %s\n", (double)x->time_ns / 1e9, x->device, x->id,
                       x->text);
@@ -71,10 +71,10 @@ static void print_or_none(FILE *to, const char *name, double value, int places)
 bool ps_summary(FILE *to, const ps_run *u, bool quiet)
 {
     const ps_scenario *s = u->rig->s;
-    const sim_misuse *misuse = u->rig->monitor->misuse(u->rig);
     int held = ps_judge_held(u->judge);
     print_expects(to, u, quiet);
-    print_misuse(to, misuse);
+    print_misuse(to, u->rig->monitor->misuse(u->rig));
+    print_misuse(to, u->rig->player->misuse(u->rig));
     (void)fprintf(to, "monitor: %s\ndevices found: %d\ncells: %d\n",
                   s->part != NULL ? s->part->name : "bq76pl536", u->found, s->cells);
     (void)fprintf(to, "simulated: %.3f s\nscans: %llu\n", (double)u->simulated / 1e9,
@@ -86,7 +86,7 @@ bool ps_summary(FILE *to, const ps_run *u, bool quiet)
     print_or_none(to, "soc error percent", u->totals.soc_percent, 2);
     print_faults(to, u->judge);
     (void)fprintf(to, "state: %s\n", bq_pack_state_name(bq_app_pack(&u->rig->fw.firmware.app)->state));
-    (void)fprintf(to, "misuse: %lu\nspeed: %.0f\n", u->totals.misuse, u->totals.speed);
+    (void)fprintf(to, "misuse: %lu\nspeed: %.0f\n", u->totals.misuse, u->speed);
     (void)fprintf(to, "expectations: %d/%d\n", held, s->expects);
     (void)fprintf(to, "result: %s\n", held == s->expects ? "pass" : "fail");
     return held == s->expects;

@@ -114,11 +114,11 @@ static void test_the_watchdog_is_fed_and_a_reset_can_be_asked_for(void)
     run_until(10 * PS_S);
     TEST_ASSERT_GREATER_THAN(0, b->rig.fed_gap);
     TEST_ASSERT_LESS_OR_EQUAL(300 * PS_MS, b->rig.fed_gap);
-    TEST_ASSERT_FALSE(ps_rig_reset_asked(&b->rig));
+    TEST_ASSERT_FALSE(b->rig.player->restarted(&b->rig));
     b->rig.fw.firmware.target.reset = true; /* as the console's command does */
     run_until(11 * PS_S);
     TEST_ASSERT_FALSE(ps_rig_outputs_on(&b->rig));
-    TEST_ASSERT_TRUE(ps_rig_reset_asked(&b->rig));
+    TEST_ASSERT_TRUE(b->rig.player->restarted(&b->rig));
     TEST_ASSERT_EQUAL(BQ_RESET_SOFTWARE, b->rig.boot.cause);
     TEST_ASSERT_EQUAL(BQ_PACK_INIT, bq_app_pack(&b->rig.fw.firmware.app)->state);
     run_until(20 * PS_S); /* the request stays */

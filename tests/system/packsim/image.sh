@@ -1,0 +1,63 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# One scenario on the image of a board: every expectation holds, and host build and image take the same decisions. A
+# longer scenario is cut off after LIMIT seconds.
+# usage: image.sh PACKSIM IMAGE.bin SCENARIO.ini SCRATCH LIMIT
+set -eu
+packsim=$1
+image=$2
+scenario=$3
+scratch=$4
+limit=$5
+name=$(basename "$scenario" .ini)
+
+skip() { echo "SKIPPED: $1"; exit 77; }
+[ -f "$image" ] || skip "no image $image (cross compiler missing?)"
+mkdir -p "$scratch"
+
+[ "$name" != slow-bus ] || skip "SPI1 of the STM32F405 has no clock below 328 kHz, the scenario wants 40 kHz"
+
+# A board that starts again checks its image first, for about 90 ms at 8 MHz; the FETs of a bq769x0 wait for that.
+if [ "$name" = afe-firmware-reset ]; then
+    sed 's/^outputs off within 50 ms of/outputs off within 150 ms of/' "$scenario" >"$scratch/$name.ini"
+    scenario=$scratch/$name.ini
+fi
+
+seconds_of() { # seconds_of KEY: a time of the scenario
+    awk -F'[= ]+' -v key="$1" '$1 == key {
+        print $2 * ($3 == "h" ? 3600 : $3 == "min" ? 60 : $3 == "ms" ? 0.001 : 1); exit }' "$scenario"
+}
+seconds=$(seconds_of duration)
+set -- "$scenario" --quiet
+cut=0
+if [ "$seconds" -gt "$limit" ]; then
+    cut=1
+    set -- "$@" --duration "${limit}s"
+fi
+
+# What the host build cannot reach in the shortened time is not asked of the image either.
+failed_of() { sed -n 's/^\(failed: .*\) (.*/\1/p' "$1"; }
+"$packsim" "$@" --decisions "$scratch/$name.host" >"$scratch/$name.host.out" 2>&1 || [ "$cut" -eq 1 ] || {
+    cat "$scratch/$name.host.out"
+    exit 1
+}
+status=0
+"$packsim" "$@" --image "$image" --decisions "$scratch/$name.image" >"$scratch/$name.out" 2>&1 || status=$?
+if grep -q 'needs the emulator' "$scratch/$name.out"; then skip "packsim is built without the emulator"; fi
+cat "$scratch/$name.out"
+if [ "$status" -ne 0 ]; then
+    [ "$status" -eq 1 ] && [ "$(failed_of "$scratch/$name.out")" = "$(failed_of "$scratch/$name.host.out")" ] || exit 1
+fi
+
+# Within one control period. The host build starts at once; a board checks its image and starts its clocks first. What
+# the board decides is seen when it tells it: faults at once, the state once a period.
+awk -v period="$(seconds_of period)" -v start=0.15 '
+    { key = $2 == "fault" ? $2 " " $3 : $2; text = $3 " " $4 }
+    FNR == NR { host[key, ++hosts[key]] = text; at[key, hosts[key]] = $1; next }
+    { n = ++images[key]
+      if (host[key, n] != text) { print "differs: image " $0 "; host " at[key, n] " " key " " host[key, n]; bad = 1; next }
+      d = $1 - at[key, n]; worst = d * d > worst * worst ? d : worst
+      if (d < -period || d > period * ($2 == "state" ? 2 : 1) + start) { print "image " $0 "; host at " at[key, n] " s"; bad = 1 } }
+    END { for (k in hosts) if (hosts[k] != images[k]) { print k ": host " hosts[k] " times, image " images[k] + 0; bad = 1 }
+          printf "largest difference: %.3f s\n", worst
+          exit bad }' "$scratch/$name.host" "$scratch/$name.image"
