@@ -78,13 +78,17 @@ typedef enum bq_pack_fault {
     BQ_FAULT_CHIP_CELL_UV,  /**< "chip_cell_uv" */
     BQ_FAULT_CHIP_OVERTEMP, /**< "chip_overtemp" */
     BQ_FAULT_OPEN_WIRE,     /**< "open_wire" */
-    BQ_FAULT_SENSOR,        /**< "sensor": no valid temperature where one is configured */
-    BQ_FAULT_SELF_TEST,     /**< "self_test" */
-    BQ_FAULT_CONFIG,        /**< "config": bring-up or configuration of the monitors failed */
-    BQ_FAULT_CONTACTOR,     /**< "contactor": the feedback contact contradicts the command; latched until
-                                 request off */
-    BQ_FAULT_NO_READING,    /**< "no_reading": a cell has no valid reading although its module answers */
-    BQ_FAULT_OVERCURRENT,   /**< "overcurrent": a monitor reports overcurrent or short circuit */
+    BQ_FAULT_SENSOR,    /**< "sensor": no valid temperature where one is configured, or no current although it
+                             is limited */
+    BQ_FAULT_SELF_TEST, /**< "self_test" */
+    BQ_FAULT_CONFIG,    /**< "config": bring-up or configuration of the monitors failed */
+    BQ_FAULT_CONTACTOR, /**< "contactor": the feedback contact contradicts the command; latched until
+                             request off */
+    BQ_FAULT_NO_READING,  /**< "no_reading": a cell has no valid reading although its module answers */
+    BQ_FAULT_OVERCURRENT, /**< "overcurrent": a monitor reports overcurrent or short circuit, or the measured
+                               discharge current exceeds discharge_max_ma */
+    BQ_FAULT_CHARGE_CURRENT, /**< "charge_overcurrent": the measured charge current exceeds charge_max_ma
+                                  (X0-FET-18); latched until request off */
     BQ_FAULT_COUNT
 } bq_pack_fault;
 
@@ -115,8 +119,10 @@ typedef struct bq_pack_config {
                                                     overtemp_clear_dc */
     uint16_t imbalance_mv, imbalance_clear_mv; /**< highest minus lowest cell, up to 4500, 1 <= clear < trip;
                                                     both 0 = off */
+    int32_t charge_max_ma;     /**< charge current that trips when exceeded, 0..1000000; 0 = not limited */
+    int32_t discharge_max_ma;  /**< likewise for the discharge current, a positive number */
     uint16_t debounce_ms;      /**< a limit must be broken this long, by every sample in it; 0..10000; 0 = at
-                                    once */
+                                         once */
     uint16_t recover_ms;       /**< ... and kept this long before a fault clears by itself, 100..65535 */
     uint16_t comm_timeout_ms;  /**< oldest value that may still decide; older = outputs off; 20..30000 */
     uint16_t balance_start_mv; /**< spread that starts balancing, up to 1000; 0 = never balance */

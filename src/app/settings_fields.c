@@ -23,6 +23,8 @@ static const bq_field app_fields[] = {
     S(pack.undertemp_clear_dc),
     U(pack.imbalance_mv),
     U(pack.imbalance_clear_mv),
+    S(pack.charge_max_ma),
+    S(pack.discharge_max_ma),
     U(pack.debounce_ms),
     U(pack.recover_ms),
     U(pack.comm_timeout_ms),

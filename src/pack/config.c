@@ -29,6 +29,8 @@ static const field fields[] = {
     FIELD(undertemp_clear_dc, FIELD_I16, -400, 1250),
     FIELD(imbalance_mv, FIELD_U16, 0, 4500),
     FIELD(imbalance_clear_mv, FIELD_U16, 0, 4500),
+    FIELD(charge_max_ma, FIELD_I32, 0, 1000000),
+    FIELD(discharge_max_ma, FIELD_I32, 0, 1000000),
     FIELD(debounce_ms, FIELD_U16, 0, 10000),
     FIELD(recover_ms, FIELD_U16, 100, 65535),
     FIELD(comm_timeout_ms, FIELD_U16, 20, 30000),

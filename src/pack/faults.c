@@ -20,23 +20,26 @@ static const char *const names[BQ_FAULT_COUNT] = {
     [BQ_FAULT_CONTACTOR] = "contactor",
     [BQ_FAULT_NO_READING] = "no_reading",
     [BQ_FAULT_OVERCURRENT] = "overcurrent",
+    [BQ_FAULT_CHARGE_CURRENT] = "charge_overcurrent",
 };
 
 /* Shown first: loss of protection, then hazards of the cells, then loss of information. */
 static const uint8_t order[BQ_FAULT_COUNT] = {
-    BQ_FAULT_CHIP,       BQ_FAULT_CONTACTOR,     BQ_FAULT_OVERCURRENT, BQ_FAULT_CHIP_CELL_OV,
-    BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,    BQ_FAULT_CHIP_CELL_UV,
-    BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,   BQ_FAULT_COMM_LOSS,
-    BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,   BQ_FAULT_CONFIG,
-    BQ_FAULT_IMBALANCE,
+    BQ_FAULT_CHIP,         BQ_FAULT_CONTACTOR,  BQ_FAULT_OVERCURRENT,   BQ_FAULT_CHARGE_CURRENT,
+    BQ_FAULT_CHIP_CELL_OV, BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,
+    BQ_FAULT_CHIP_CELL_UV, BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,
+    BQ_FAULT_COMM_LOSS,    BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,
+    BQ_FAULT_CONFIG,       BQ_FAULT_IMBALANCE,
 };
 
 /* With separate paths these leave a direction as it is; all others stop both. */
 #define BIT(fault) ((uint32_t)1u << (fault))
 #define SPARES_CHARGE (BIT(BQ_FAULT_CELL_UV) | BIT(BQ_FAULT_CHIP_CELL_UV))
-#define SPARES_DISCHARGE (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CHIP_CELL_OV) | BIT(BQ_FAULT_UNDERTEMP))
+#define SPARES_DISCHARGE                                                                                     \
+    (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CHIP_CELL_OV) | BIT(BQ_FAULT_UNDERTEMP) |                          \
+     BIT(BQ_FAULT_CHARGE_CURRENT))
 /* These clear only while the request is off. */
-#define LATCHED BIT(BQ_FAULT_CONTACTOR)
+#define LATCHED (BIT(BQ_FAULT_CONTACTOR) | BIT(BQ_FAULT_CHARGE_CURRENT))
 
 const char *bq_pack_fault_name(bq_pack_fault fault)
 {

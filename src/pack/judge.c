@@ -34,6 +34,11 @@ static uint16_t lowest_bit(uint32_t mask)
     return n;
 }
 
+static int32_t as_value(uint32_t ms)
+{
+    return ms > INT32_MAX ? INT32_MAX : (int32_t)ms;
+}
+
 /* A limit that must not be exceeded, by the value of one cell or one sensor. */
 static void judge_high(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
 {
@@ -91,6 +96,26 @@ static void judge_sensors(const bq_pack *p, const bq_picture *v, bq_condition *c
     at_sensor(&c[BQ_FAULT_UNDERTEMP], v->s, y->temp_min);
 }
 
+/* Limits of the current, where there are any: then it must be known. */
+static void judge_current(const bq_pack *p, const bq_picture *v, bq_condition *c)
+{
+    const bq_pack_config *k = &p->config;
+    const int32_t ma = v->s->current_ma;
+
+    if (!v->current_known) {
+        c[BQ_FAULT_SENSOR].broken = p->started && bq_pack_limits_current(k);
+        c[BQ_FAULT_SENSOR].value = as_value(v->s->current_age_ms);
+        return;
+    }
+    if (k->charge_max_ma != 0) {
+        judge_high(&c[BQ_FAULT_CHARGE_CURRENT], ma, k->charge_max_ma, 0);
+    }
+    if (k->discharge_max_ma != 0) {
+        judge_low(&c[BQ_FAULT_OVERCURRENT], ma, -k->discharge_max_ma, 0);
+        c[BQ_FAULT_OVERCURRENT].debounce_ms = k->debounce_ms;
+    }
+}
+
 /* Takes the first module that shows the cause. False if another one did before. */
 static bool first(bq_condition *c, uint16_t m, int32_t value)
 {
@@ -139,6 +164,10 @@ static void judge_comparators(const bq_picture *v, uint16_t m, uint16_t flags, b
     judge_comparator(v, m, (flags & BQ_F_CELL_OV) != 0u, r->cell_ov, &c[BQ_FAULT_CHIP_CELL_OV], false);
     judge_comparator(v, m, (flags & BQ_F_CELL_UV) != 0u, r->cell_uv, &c[BQ_FAULT_CHIP_CELL_UV], false);
     judge_comparator(v, m, (flags & BQ_F_OVERTEMP) != 0u, r->sensor_ot, &c[BQ_FAULT_CHIP_OVERTEMP], true);
+    if ((flags & (BQ_F_OVERCURRENT | BQ_F_SHORT)) != 0u && c[BQ_FAULT_OVERCURRENT].debounce_ms != 0u) {
+        c[BQ_FAULT_OVERCURRENT].broken = false; /* so far a limit of the pack only */
+        c[BQ_FAULT_OVERCURRENT].debounce_ms = 0;
+    }
     judge_comparator(v, m, (flags & (BQ_F_OVERCURRENT | BQ_F_SHORT)) != 0u, 0, &c[BQ_FAULT_OVERCURRENT],
                      false);
 }
@@ -173,11 +202,6 @@ static void judge_modules(const bq_pack *p, const bq_picture *v, bq_condition *c
         c[BQ_FAULT_OPEN_WIRE].broken = true;
         at_cell(&c[BQ_FAULT_OPEN_WIRE], v->s, v->open_cell);
     }
-}
-
-static int32_t as_value(uint32_t ms)
-{
-    return ms > INT32_MAX ? INT32_MAX : (int32_t)ms;
 }
 
 /* Why a module has been blind for too long: a fault is broken, or one that explains it is active. */
@@ -224,6 +248,7 @@ void bq_pack_judge(const bq_pack *p, const bq_picture *v, const bq_pack_input *i
     if (v->live && v->s != NULL) {
         judge_cells(p, v, c);
         judge_sensors(p, v, c);
+        judge_current(p, v, c);
         judge_modules(p, v, c);
     }
     for (uint16_t m = 0; v->live && m < p->config.modules; m++) {
@@ -233,7 +258,7 @@ void bq_pack_judge(const bq_pack *p, const bq_picture *v, const bq_pack_input *i
     }
     judge_input(p, in, c);
     for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        if (f == BQ_FAULT_OPEN_WIRE || f <= BQ_FAULT_IMBALANCE) {
+        if (f == BQ_FAULT_OPEN_WIRE || f == BQ_FAULT_CHARGE_CURRENT || f <= BQ_FAULT_IMBALANCE) {
             c[f].debounce_ms = p->config.debounce_ms;
         }
         if (f > BQ_FAULT_IMBALANCE) {

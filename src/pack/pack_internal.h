@@ -47,6 +47,11 @@ void bq_pack_judge(const bq_pack *p, const bq_picture *v, const bq_pack_input *i
 /* faults.c: debounce, record, recover. */
 void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_pack_input *in, const bq_condition *c,
                            uint32_t now_ms, uint32_t dt_ms);
+static inline bool bq_pack_limits_current(const bq_pack_config *k)
+{
+    return (k->charge_max_ma | k->discharge_max_ma) != 0;
+}
+
 bool bq_pack_stops(const bq_pack *p, bool charge); /* an active fault forbids this direction */
 bool bq_pack_pending(const bq_pack *p);            /* some cause is present */
 

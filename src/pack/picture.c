@@ -168,7 +168,8 @@ static void update_blindness(bq_pack *p, const bq_picture *v, const bq_pack_inpu
     for (uint16_t m = 0; m < p->config.modules; m++) {
         any |= v->module[m];
     }
-    y->complete = v->s != NULL && (any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u;
+    y->complete = v->s != NULL && (any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u &&
+                  (v->current_known || !bq_pack_limits_current(&p->config));
     p->started = p->started || (y->complete && in->monitor == BQ_MONITOR_UP);
     for (uint16_t m = 0; m < p->config.modules; m++) {
         if (v->s != NULL && v->live &&

@@ -53,6 +53,8 @@ static const range ranges[] = {
     {"undertemp_clear_dc", -400, 1250, 32767},
     {"imbalance_mv", 0, 4500, 65535},
     {"imbalance_clear_mv", 0, 4500, 65535},
+    {"charge_max_ma", 0, 1000000, 1000001},
+    {"discharge_max_ma", 0, 1000000, 1000001},
     {"debounce_ms", 0, 10000, 65535},
     {"recover_ms", 100, 65535, 65535},
     {"comm_timeout_ms", 20, 30000, 65535},

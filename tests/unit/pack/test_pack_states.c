@@ -311,9 +311,9 @@ static void test_a_fault_survives_sleep(void)
 static void test_names(void)
 {
     static const char *const faults[BQ_FAULT_COUNT] = {
-        "cell_ov",   "cell_uv",      "overtemp",     "undertemp",     "imbalance",  "comm_loss",
-        "chip",      "chip_cell_ov", "chip_cell_uv", "chip_overtemp", "open_wire",  "sensor",
-        "self_test", "config",       "contactor",    "no_reading",    "overcurrent"};
+        "cell_ov",   "cell_uv",      "overtemp",     "undertemp",     "imbalance",   "comm_loss",
+        "chip",      "chip_cell_ov", "chip_cell_uv", "chip_overtemp", "open_wire",   "sensor",
+        "self_test", "config",       "contactor",    "no_reading",    "overcurrent", "charge_overcurrent"};
     static const char *const states[] = {"init", "self-test", "standby", "on", "fault", "sleep"};
     static const char *const holds[] = {"none", "condition", "hysteresis", "unknown", "request", "time"};
 
@@ -335,8 +335,8 @@ static void test_names(void)
 static void test_the_directions_of_every_fault(void)
 {
     static const uint32_t charge_stays = 1u << BQ_FAULT_CELL_UV | 1u << BQ_FAULT_CHIP_CELL_UV;
-    static const uint32_t discharge_stays =
-        1u << BQ_FAULT_CELL_OV | 1u << BQ_FAULT_CHIP_CELL_OV | 1u << BQ_FAULT_UNDERTEMP;
+    static const uint32_t discharge_stays = 1u << BQ_FAULT_CELL_OV | 1u << BQ_FAULT_CHIP_CELL_OV |
+                                            1u << BQ_FAULT_UNDERTEMP | 1u << BQ_FAULT_CHARGE_CURRENT;
 
     for (int f = 0; f < BQ_FAULT_COUNT; f++) {
         const char *name = bq_pack_fault_name((bq_pack_fault)f);
@@ -350,11 +350,11 @@ static void test_the_directions_of_every_fault(void)
 static void test_the_cause_is_the_most_serious_active_fault(void)
 {
     static const bq_pack_fault order[] = {
-        BQ_FAULT_CHIP,       BQ_FAULT_CONTACTOR,     BQ_FAULT_OVERCURRENT, BQ_FAULT_CHIP_CELL_OV,
-        BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,    BQ_FAULT_CHIP_CELL_UV,
-        BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,   BQ_FAULT_COMM_LOSS,
-        BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,   BQ_FAULT_CONFIG,
-        BQ_FAULT_IMBALANCE};
+        BQ_FAULT_CHIP,         BQ_FAULT_CONTACTOR,  BQ_FAULT_OVERCURRENT,   BQ_FAULT_CHARGE_CURRENT,
+        BQ_FAULT_CHIP_CELL_OV, BQ_FAULT_CELL_OV,    BQ_FAULT_CHIP_OVERTEMP, BQ_FAULT_OVERTEMP,
+        BQ_FAULT_CHIP_CELL_UV, BQ_FAULT_CELL_UV,    BQ_FAULT_UNDERTEMP,     BQ_FAULT_OPEN_WIRE,
+        BQ_FAULT_COMM_LOSS,    BQ_FAULT_NO_READING, BQ_FAULT_SENSOR,        BQ_FAULT_SELF_TEST,
+        BQ_FAULT_CONFIG,       BQ_FAULT_IMBALANCE};
     const int n = (int)(sizeof order / sizeof order[0]);
 
     TEST_ASSERT_EQUAL(BQ_FAULT_COUNT, n);

@@ -67,7 +67,7 @@ static void test_crc_is_that_of_zlib(void)
 
 static void test_the_form_of_a_record(void)
 {
-    const size_t words = 5u + 33u + 2u * 64u + 29u + 62u; /* head, loop and pack, curve, driver, cells */
+    const size_t words = 5u + 35u + 2u * 64u + 29u + 62u; /* head, loop and pack, curve, driver, cells */
     const size_t len = bq_settings_encode(&a.settings, 0x01020304u, record, sizeof record);
 
     TEST_ASSERT_EQUAL((words + 1u) / 2u * 8u, len);
@@ -133,7 +133,7 @@ static void test_tables_leave_no_field_out(void)
         bq76pl536_config stack;
         bq769x0_config afe;
     } u;
-    const size_t app = 2u * 4u + 1u + 21u * 2u + 2u * 1u + 4u + 1u + 2u + 4u * 4u;
+    const size_t app = 2u * 4u + 1u + 21u * 2u + 2u * 1u + 3u * 4u + 1u + 2u + 4u * 4u;
     const size_t stack = 17u * 1u + 9u * 2u + 3u * 4u;
     const size_t afe = 14u * 1u + 11u * 2u + 4u * 4u;
 
@@ -206,9 +206,9 @@ static void test_a_value_out_of_range_refuses_the_whole_record(void)
         {5u + 3u, 65535, 65536},              /* cells, 16 bits */
         {5u + 12u, 0xffff8000u, 0xffff7fffu}, /* undertemp_dc, 16 bits signed */
         {5u + 12u, 32767, 32768},
-        {5u + 27u, 1, 2},                        /* separate_paths */
-        {5u + 28u, 64, 65},                      /* points of the curve */
-        {5u + 33u + 128u + 29u + 61u, 255, 256}, /* cells of the last device: the last value of all */
+        {5u + 29u, 1, 2},                        /* separate_paths */
+        {5u + 30u, 64, 65},                      /* points of the curve */
+        {5u + 35u + 128u + 29u + 61u, 255, 256}, /* cells of the last device: the last value of all */
     };
 
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
@@ -238,7 +238,7 @@ static void test_a_newer_record_that_cannot_be_used_is_not_replaced_by_an_older_
     (void)place(1, 8);
     place_changed(4, 9); /* sector 0, newer, same layout: in force */
     TEST_ASSERT_EQUAL(BQ_OK, bq_settings_load(&b.settings, &nvm));
-    set_word(5u + 27u, 2);
+    set_word(5u + 29u, 2); /* separate_paths */
     set_word(1, bq_crc32(0, record + 8, (word(2) & 0xffffu) * 4u - 8u));
     memcpy(flash.memory[0], record, (word(2) & 0xffffu) * 4u);
     refused(BQ_E_RANGE);
@@ -289,9 +289,9 @@ static void test_arguments(void)
     bad.sectors = 1;
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));
     bad = nvm;
-    bad.sector_bytes = 1031; /* the record has 258 words */
+    bad.sector_bytes = 1039; /* the record has 260 words */
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));
-    bad.sector_bytes = 1032;
+    bad.sector_bytes = 1040;
     TEST_ASSERT_EQUAL(BQ_E_NOT_FOUND, bq_settings_load(&b.settings, &bad));
     bad.ops = NULL;
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));
