@@ -66,6 +66,16 @@ void emu_clock_dead(emu *e)
     emu_kick(e);
 }
 
+/* Without supply nothing drives a pin, long before the start that resets the rest. */
+static void release_pins(emu *e)
+{
+    for (unsigned i = 0; i < sizeof e->gpio / sizeof e->gpio[0]; i++) {
+        if (e->gpio[i] != NULL) {
+            e->gpio[i]->reset(e->gpio[i]);
+        }
+    }
+}
+
 bool emu_settle_reset(emu *e)
 {
     if (e->reset_asked == EMU_CAUSES) {
@@ -73,6 +83,7 @@ bool emu_settle_reset(emu *e)
     }
     if (e->trap.sprung) { /* power was lost: it is off for a while */
         e->trap.sprung = false;
+        release_pins(e);
         emu_set_now(e, emu_now(e) + e->trap.off_ns);
         (void)emu_outside(e);
     }
@@ -87,6 +98,7 @@ void emu_set_supply_mv(emu *e, unsigned mv)
     emu_kick(e);
     if (e->powered && mv < POWER_DOWN_MV) {
         e->powered = false; /* everything is reset now; the start waits for the supply */
+        release_pins(e);
         emu_ask_reset(e, EMU_CAUSE_POWER);
     } else if (!e->powered && mv >= POWER_UP_MV) {
         e->powered = true;
