@@ -6,6 +6,7 @@
 
 #define SAFE_AGAIN_MS 100u  /* after a refusal the lines are written again */
 #define SAFE_RETRY_MS 1000u /* and a bring-up that failed is repeated */
+#define LOOK_US 5000u       /* a request line that bounces is seen low in between */
 
 /* ---- set-up ---------------------------------------------------------------------------------- */
 
@@ -142,6 +143,15 @@ static bq_pack_request wanted(bq_firmware *fw)
     return fw->request == BQ_REQUEST_SLEEP && !fw->high ? BQ_REQUEST_SLEEP : BQ_REQUEST_OFF;
 }
 
+/* When to look at the line again. */
+static uint32_t look_us(const bq_firmware *fw)
+{
+    if (!fw->high) {
+        return BQ_FIRMWARE_SLEEP_US;
+    }
+    return fw->now_ms - fw->high_ms < BQ_FIRMWARE_DEBOUNCE_MS ? LOOK_US : BQ_FIRMWARE_DEBOUNCE_MS * 1000u;
+}
+
 /* ---- reset ----------------------------------------------------------------------------------- */
 
 /* Outputs off, carried out by the monitor, and the answer has left the console. */
@@ -191,7 +201,7 @@ static uint32_t run(bq_firmware *fw)
         feed(fw);
     }
     fw->busy = bq_app_get_counters(&fw->app)->steps != steps;
-    return fw->high ? smaller(hint, BQ_FIRMWARE_DEBOUNCE_MS * 1000u) : hint;
+    return smaller(hint, look_us(fw));
 }
 
 /* Outputs that are the monitor's own FETs: its bring-up leaves them off. */
