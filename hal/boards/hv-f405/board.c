@@ -22,9 +22,9 @@ void board_outputs_safe(void)
 void board_start(board_parts *p)
 {
     stm32_life_begin(&p->boot);
+    p->boot.crystal_failed = !stm32_clock_start(); /* first: the checksum takes ten times longer without */
     p->boot.image_ok = stm32_image_self_check();
     p->boot.image_crc = stm32_image_stored_crc();
-    p->boot.crystal_failed = !stm32_clock_start();
     stm32_watchdog_start();
     stm32_time_init(&p->time);
     stm32_supply_init();
