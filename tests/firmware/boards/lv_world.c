@@ -11,6 +11,7 @@ static void advance(void *ctx, uint64_t now)
     if (now > lv.chip.now) {
         sim_x0_advance(&lv.chip, now - lv.chip.now);
     }
+    noise_advance(&lv.noise, lv.e, now);
     while (lv.type != NULL && *lv.type != '\0' && now >= lv.type_ns) {
         (void)emu_uart_in(lv.e, 2, (uint8_t)*lv.type++);
         lv.type_ns = now + 2 * MS;
@@ -24,12 +25,16 @@ static uint64_t next(void *ctx)
     if (at <= lv.chip.now) { /* waits for something else than time */
         at = EMU_NEVER;
     }
+    at = noise_next(&lv.noise) < at ? noise_next(&lv.noise) : at;
     return lv.type != NULL && *lv.type != '\0' && lv.type_ns < at ? lv.type_ns : at;
 }
 
 static int pin_in(void *ctx, unsigned port, unsigned pin)
 {
     (void)ctx;
+    if (noise_on(&lv.noise, port, pin)) {
+        return lv.noise.level ? 1 : 0;
+    }
     if (port == 0 && pin == 0) {
         return sim_x0_alert(&lv.chip) ? 1 : 0;
     }
@@ -119,16 +124,31 @@ static uint64_t i2c_stretch_ns(void *ctx, unsigned bus)
     return ns;
 }
 
+static void heartbeat(const emu_can_frame *frame)
+{
+    uint64_t now = emu_now(lv.e);
+    if (lv.beat_ns != 0 && now - lv.beat_ns > lv.longest_ns) {
+        lv.longest_ns = now - lv.beat_ns;
+    }
+    lv.beat_ns = now;
+    if (lv.settled_ns == 0 && (frame->data[0] == 2 || frame->data[0] == 3)) { /* standby, on */
+        lv.settled_ns = now;
+    }
+}
+
 static emu_can_result can_out(void *ctx, unsigned bus, const emu_can_frame *frame)
 {
     (void)ctx;
     (void)bus;
     lv.frames++;
-    if (frame->id - 0x100u < 16u) {
+    if (lv.result == EMU_CAN_ACKED && frame->id - 0x100u < 16u) {
         lv.last[frame->id - 0x100u] = *frame;
         lv.count[frame->id - 0x100u]++;
+        if (frame->id == 0x100u) {
+            heartbeat(frame);
+        }
     }
-    return EMU_CAN_ACKED;
+    return lv.result;
 }
 
 static void uart_out(void *ctx, unsigned uart, uint8_t byte)
@@ -167,6 +187,7 @@ bool lv_start(const char *image)
                              .can_out = can_out,
                              .uart_out = uart_out};
     memset(&lv, 0, sizeof lv);
+    lv.result = EMU_CAN_ACKED;
     make_chip();
     lv.e = emu_create(&emu_f072, &world);
     if (lv.e == NULL || !emu_cpu_open(lv.e) || !emu_load_file(lv.e, image)) {
@@ -194,6 +215,12 @@ void lv_type(const char *line)
     lv.type = line;
     lv.type_ns = emu_now(lv.e) + 1 * MS;
     (void)emu_run_until(lv.e, emu_now(lv.e) + 300 * MS);
+}
+
+void lv_watch_period(void)
+{
+    lv.longest_ns = 0;
+    lv.beat_ns = 0;
 }
 
 bool lv_both_fets(void)

@@ -5,10 +5,8 @@
 #ifndef LV_WORLD_H
 #define LV_WORLD_H
 
-#include "emu.h"
+#include "noise.h"
 #include "sim_x0.h"
-
-#define MS 1000000ull
 
 typedef struct lv_world {
     emu *e;
@@ -27,6 +25,10 @@ typedef struct lv_world {
     unsigned upset;                   /* so many of the next address bytes get this answer instead */
     emu_i2c_answer upset_answer;
     uint64_t stretch_ns; /* after the next byte, once */
+    noise noise;
+    emu_can_result result;        /* of every frame sent; only what is acknowledged is kept */
+    uint64_t beat_ns, longest_ns; /* last heartbeat, longest pause between two */
+    uint64_t settled_ns;          /* first heartbeat with the state standby or on */
 } lv_world;
 
 extern lv_world lv;
@@ -39,6 +41,8 @@ void lv_run(unsigned ms);
 /** Types a line and runs on for 300 ms. */
 void lv_type(const char *line);
 bool lv_both_fets(void);
+/** Restarts the measurement of the pause between two heartbeats. */
+void lv_watch_period(void);
 /** Marks the step of the main loop, which the map beside the image names. */
 bool lv_mark(const char *map);
 
