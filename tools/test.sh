@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds everything and runs every test: the firmware images with two compilers, the debug suite (images in the emulator
-# included), the suite under AddressSanitizer and UndefinedBehaviorSanitizer, a clang build with all warnings as errors, the
-# requirement trace. Installs what is missing when it may; what needs a tool that is not there is skipped, and said.
+# Builds everything and runs every test: the debug suite, the firmware images in the emulator (optimised, for speed), the
+# suite under AddressSanitizer and UndefinedBehaviorSanitizer, a clang build with all warnings as errors, the requirement
+# trace. Installs what is missing when it may; what needs a tool that is not there is skipped, and said.
 #   tools/test.sh [--quick]     --quick: nothing is installed but what is needed, and only debug suite and trace
 # Works from any directory, writes only into build/ of the tree. The last line is "N passed, N failed".
 set -u
@@ -54,26 +54,15 @@ suite() {
     done < <(sed -nE 's/.*Test +#[0-9]+: ([^ ]+) .*\*\*\*Skipped.*/\1/p' "$log")
 }
 
-# the images first: the suite runs them in the emulator
-for board in lv-f072 hv-f405; do
-    if [ $quick = 1 ]; then
-        :
-    elif ! arm_works; then
-        skip "image $board: arm-none-eabi-gcc with newlib, or python3, is not installed"
-    else
-        build $board
-        if have clang-19 && have ld.lld-19; then build $board-clang; else skip "image $board with clang: clang-19 or lld-19 is not installed"; fi
-    fi
-done
-
-build dev && suite dev
+build dev && suite dev -LE firmware
 
 if [ $quick = 1 ]; then
     skip "images, sanitizers and clang: --quick"
 else
+    build release && suite release -L firmware
     if echo 'int main(void) { return 0; }' | gcc -x c - -fsanitize=address,undefined -o "$TMPDIR/sanitizers" 2>/dev/null &&
         "$TMPDIR/sanitizers" 2>/dev/null; then
-        build asan && suite asan -LE image # the emulator translates code as it goes: its own memory is not the firmware's
+        build asan && suite asan -LE firmware
     else
         skip "AddressSanitizer and UBSan: gcc's sanitizer libraries are missing or do not run here"
     fi
