@@ -124,6 +124,11 @@ const emu_meter *emu_get_meter(const emu *e);
 /** A place that the image comes by once in each pass of its main loop, for example the address of its step
  * function from the map file: `longest_pass` is measured there. */
 void emu_mark(emu *e, uint32_t address);
+/** From now on counts how often the instruction at each address of flash is executed. False: no memory, or no
+ * processor. */
+bool emu_count_code(emu *e);
+/** How often; 0 for anything that is not counted. */
+uint64_t emu_code_count(const emu *e, uint32_t address);
 /** Clears the "longest" and "lowest" entries, for example after start-up. */
 void emu_meter_clear(emu *e);
 

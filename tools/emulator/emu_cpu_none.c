@@ -15,6 +15,19 @@ emu_stop emu_run_until(emu *e, uint64_t ns)
     return EMU_STOP_NO_CPU;
 }
 
+bool emu_count_code(emu *e)
+{
+    (void)e;
+    return false;
+}
+
+uint64_t emu_code_count(const emu *e, uint32_t address)
+{
+    (void)e;
+    (void)address;
+    return 0;
+}
+
 void emu_cpu_close(emu *e)
 {
     (void)e;

@@ -43,6 +43,7 @@ typedef struct emu_cpu {
     emu *e;
     void *uc;
     uint16_t *flags; /**< of each half-word of flash, see enum emu_insn */
+    uint64_t *count; /**< how often executed; NULL = not counted */
     uint32_t code_base, code_words;
     uint64_t until_ns;
     enum engine_why why;

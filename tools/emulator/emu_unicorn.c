@@ -91,6 +91,9 @@ static void on_code(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     }
     e->cycle++;
     e->meter.instructions++;
+    if (c->count != NULL && i < c->code_words) {
+        c->count[i]++;
+    }
 }
 
 static void on_access(uc_engine *uc, uc_mem_type type, uint64_t address, int size, int64_t value, void *user)
@@ -259,6 +262,24 @@ bool emu_cpu_open(emu *e)
     return true;
 }
 
+bool emu_count_code(emu *e)
+{
+    emu_cpu *c = e->cpu != NULL ? &((engine *)e->cpu)->cpu : NULL;
+
+    if (c != NULL && c->count == NULL) {
+        c->count = calloc(c->code_words, sizeof c->count[0]);
+    }
+    return c != NULL && c->count != NULL;
+}
+
+uint64_t emu_code_count(const emu *e, uint32_t address)
+{
+    const emu_cpu *c = e->cpu != NULL ? &((const engine *)e->cpu)->cpu : NULL;
+    uint32_t i = c != NULL ? (address - c->code_base) / 2u : 0;
+
+    return c != NULL && c->count != NULL && i < c->code_words ? c->count[i] : 0;
+}
+
 void emu_cpu_close(emu *e)
 {
     engine *g = e->cpu;
@@ -268,6 +289,7 @@ void emu_cpu_close(emu *e)
             uc_close(g->cpu.uc);
         }
         free(g->cpu.flags);
+        free(g->cpu.count);
         free(g);
         e->cpu = NULL;
     }

@@ -90,6 +90,13 @@ static int prepare(session *x, ps_error *e)
     x->rig.player = x->options.image != NULL ? &ps_image : &ps_native;
     x->rig.image = x->options.image;
     x->rig.board = x->options.board;
+    x->rig.loop = (uint32_t)x->options.loop;
+    if (x->options.costs != NULL) {
+        x->rig.costs = fopen(x->options.costs, "w");
+        if (x->rig.costs == NULL) {
+            return ps_fail(e, (ps_place){x->options.costs, 0}, "%s", strerror(errno));
+        }
+    }
     if (ps_rig_init(&x->rig, &x->scenario, e) != 0) {
         return -1;
     }
@@ -160,6 +167,10 @@ static int finish(session *x)
     }
     if (ps_rig_close(&x->rig) != 0) {
         (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.vcd);
+        status = EXIT_UNUSABLE;
+    }
+    if (x->rig.costs != NULL && fclose(x->rig.costs) != 0) {
+        (void)fprintf(stderr, "%s:0: cannot be written\n", x->options.costs);
         status = EXIT_UNUSABLE;
     }
     return status;

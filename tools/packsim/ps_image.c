@@ -209,6 +209,12 @@ static int power_up(ps_rig *r, ps_error *e)
     if (configure(r, e) != 0) {
         return -1;
     }
+    if (r->loop != 0u) {
+        emu_mark(m->e, r->loop);
+    }
+    if (r->costs != NULL && !emu_count_code(m->e)) {
+        return ps_fail(e, at, "out of memory");
+    }
     emu_reset(m->e, EMU_CAUSE_POWER);
     return 0;
 }
@@ -230,10 +236,33 @@ static int begin(ps_rig *r, ps_error *e)
     return power_up(r, e);
 }
 
+static void tell_costs(const ps_rig *r)
+{
+    const emu *e = r->emulation->e;
+    const emu_meter *m = emu_get_meter(e);
+    uint32_t at = 0x08000000u;
+    (void)fprintf(r->costs, "simulated_ns %llu\ninstructions %llu\ncycles_awake %llu\ncycles_asleep %llu\n",
+                  (unsigned long long)emu_now(e), (unsigned long long)m->instructions,
+                  (unsigned long long)m->cycles, (unsigned long long)m->cycles_asleep);
+    (void)fprintf(r->costs, "longest_pass %llu\nlongest_latency %llu\nlongest_isr %llu\nlowest_sp %lx\n",
+                  (unsigned long long)m->longest_pass, (unsigned long long)m->longest_latency,
+                  (unsigned long long)m->longest_isr, (unsigned long)m->lowest_sp);
+    (void)fprintf(r->costs, "scans %lu\n", (unsigned long)r->fw.firmware.app.sample.sequence);
+    for (; at < 0x08020000u; at += 2u) {
+        if (emu_code_count(e, at) != 0) {
+            (void)fprintf(r->costs, "at %lx %llu\n", (unsigned long)at,
+                          (unsigned long long)emu_code_count(e, at));
+        }
+    }
+}
+
 static void end(ps_rig *r)
 {
     if (r->emulation == NULL) {
         return;
+    }
+    if (r->emulation->e != NULL && r->costs != NULL) {
+        tell_costs(r);
     }
     if (r->emulation->e != NULL) {
         emu_destroy(r->emulation->e);

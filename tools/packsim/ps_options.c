@@ -98,6 +98,22 @@ static int take_can(ps_options *o, const char *text, int i, ps_error *e)
     return 0;
 }
 
+static int take_costs(ps_options *o, const char *text, int i, ps_error *e)
+{
+    (void)i;
+    (void)e;
+    o->costs = text;
+    return 0;
+}
+
+static int take_loop(ps_options *o, const char *text, int i, ps_error *e)
+{
+    char *end;
+    o->loop = strtoull(text, &end, 16);
+    return o->loop != 0 && o->loop <= UINT32_MAX && *end == '\0' ? 0
+                                                                 : usage(e, "--loop", i, "not an address");
+}
+
 static const struct {
     const char *name;
     int (*take)(ps_options *o, const char *text, int i, ps_error *e);
@@ -105,7 +121,8 @@ static const struct {
     {"--duration", take_duration}, {"--current", take_current}, {"--csv", take_csv},
     {"--seed", take_seed},         {"--set", take_set},         {"--vcd", take_vcd},
     {"--report", take_report},     {"--can", take_can},         {"--decisions", take_decisions},
-    {"--image", take_image},       {"--board", take_board},
+    {"--image", take_image},       {"--board", take_board},     {"--costs", take_costs},
+    {"--loop", take_loop},
 };
 
 static int take_option(ps_options *o, int argc, char **argv, int *i, ps_error *e)
@@ -148,6 +165,9 @@ int ps_options_parse(ps_options *o, int argc, char **argv, ps_error *e)
     if (o->board != NULL && o->image == NULL) {
         return usage(e, "--board", 0, "needs --image");
     }
+    if ((o->costs != NULL || o->loop != 0) && o->image == NULL) {
+        return usage(e, "--costs", 0, "needs --image");
+    }
     if (o->scenario == NULL && !o->list && !o->help) {
         return usage(e, "command line", 0, "no scenario (see packsim --help)");
     }
@@ -174,7 +194,8 @@ void ps_options_help(FILE *to)
         "        [--report FILE.html] [--can DEST] [--vcd FILE] [--seed N]"
         " [--set SECTION.KEY=VALUE]...\n"
         "        [--watch | --console] [--quiet]\n"
-        "        [--decisions FILE] [--image FILE.bin [--board lv-f072|hv-f405]]\n"
+        "        [--decisions FILE] [--image FILE.bin [--board lv-f072|hv-f405] [--costs FILE [--loop "
+        "HEX]]]\n"
         "packsim --list\n"
         "\n"
         "Runs the pack controller firmware on a simulated pack, faster than real time. SCENARIO is a path, "
@@ -184,6 +205,10 @@ void ps_options_help(FILE *to)
         "through "
         "its settings,\n"
         "seen through its pins and CAN. Nobody promises a speed then: \"speed above\" always holds.\n"
+        "--costs: what the image cost: instructions, sleep, latencies, stack, and how often the instruction "
+        "at "
+        "each address was\n"
+        "executed; --loop: the address of the function that its main loop calls, for the longest pass.\n"
         "--decisions: a line for each change of the state, of a fault and of the outputs.\n"
         "Exit status: 0 = every expectation held, 1 = one failed, 2 = unusable scenario or option, nothing "
         "simulated.\n"

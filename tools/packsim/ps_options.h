@@ -15,6 +15,8 @@ typedef struct ps_options {
     const char *scenario;
     const char *csv, *vcd, *report, *can, *decisions;
     const char *image, *board; /**< NULL = the native firmware; the board that fits */
+    const char *costs;         /**< of an image */
+    uint64_t loop;             /**< address of its super-loop; 0 = not given */
     const char *set[PS_SETS];
     int sets;
     ps_override override;

@@ -163,8 +163,13 @@ uint64_t ps_rig_bus_errors(const ps_rig *r)
 
 int ps_rig_init(ps_rig *r, ps_scenario *s, ps_error *e)
 {
-    const ps_rig old = {
-        .can = r->can, .console = r->console, .player = r->player, .image = r->image, .board = r->board};
+    const ps_rig old = {.can = r->can,
+                        .console = r->console,
+                        .player = r->player,
+                        .image = r->image,
+                        .board = r->board,
+                        .costs = r->costs,
+                        .loop = r->loop};
     *r = old;
     r->player = r->player != NULL ? r->player : &ps_native;
     r->s = s;

@@ -94,6 +94,8 @@ typedef struct ps_rig {
     const ps_player *player; /**< NULL = ps_native; set before ps_rig_init(), as the next two */
     const char *image;       /**< file, for ps_image */
     const char *board;       /**< name; NULL = the one that fits the monitor */
+    FILE *costs;             /**< what the image cost goes there at the end; NULL = not wanted */
+    uint32_t loop;           /**< address that its main loop comes by in each pass; 0 = not known */
     struct ps_emulation *emulation;
     ps_firmware fw; /**< with ps_image: what it has told on CAN, in the shape of the native one */
     bq_afe afe;
