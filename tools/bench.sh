@@ -219,6 +219,69 @@ speed_rows() { # speed_rows SCENARIO
         sed -n -E 's/^(devices found|cells|simulated|scans|bus bytes per scan|misuse|speed|result): (.*)$/| \1 | \2 |/p'
 }
 
+# ---- the firmware images ----
+
+image_build() { # image_build BOARD: the image of the preset, with line numbers, which change no byte of it
+    CFLAGS=-g cmake -S "$root" --preset "$1" -B "$root/build/bench-$1" >/dev/null
+    cmake --build "$root/build/bench-$1" --parallel "$jobs" >/dev/null
+}
+
+image_run() { # image_run BOARD SCENARIO DURATION
+    local loop elf=$root/build/bench-$1/$1.elf
+    loop=$(arm-none-eabi-nm "$elf" | awk '$3 == "bq_firmware_step" { print $1 }')
+    "$root/build/bench-table16/tools/packsim/packsim" "$2" --duration "$3" --image "$root/build/bench-$1/$1.bin" --quiet \
+        --costs "$root/build/bench-$1/costs" ${loop:+--loop "$loop"} >/dev/null
+}
+
+image_size() { # flash and RAM; the stack is part of the RAM
+    arm-none-eabi-size "$root/build/bench-$1/$1.elf" | awk 'NR == 2 { print "| flash | " $1 + $2 " bytes |\n| RAM, stack included | " $2 + $3 " bytes |" }'
+}
+
+image_stack() { # the deepest path of the program; of the handlers; 36 bytes are what an exception saves
+    sh tools/image_stack.sh "$1" | awk '
+        $2 == "stm32_start" && !program { program = $1 }
+        $2 ~ /_handler$/ && $1 > handler { handler = $1 }
+        END { print "| deepest stack by the call graph | " program " bytes, and " handler + 36 " in an interrupt |" }'
+}
+
+image_table() { # image_table BOARD SCENARIO DURATION WHAT
+    cat <<TEXT
+
+### $1
+
+$4
+
+    build/bench-table16/tools/packsim/packsim $2 --duration $3 --image build/bench-$1/$1.bin --costs FILE --loop ADDRESS
+    tools/bench/image_costs.py loop FILE build/bench-$1/$1.elf       # and: rooms
+    tools/image_stack.sh $1
+
+| | |
+|---|---|
+TEXT
+    image_run "$1" "$2" "$3"
+    image_size "$1"
+    python3 tools/bench/image_costs.py loop "build/bench-$1/costs" "build/bench-$1/$1.elf"
+    image_stack "$1"
+    printf '\n| instructions for each update of the pack | |\n|---|---|\n'
+    python3 tools/bench/image_costs.py rooms "build/bench-$1/costs" "build/bench-$1/$1.elf"
+}
+
+image_part() {
+    arm && "$root/build/bench-table16/tools/packsim/packsim" --help | grep -q -e --image || return 0
+    cat <<'TEXT'
+
+## The firmware images
+
+The unchanged images of the two boards in the emulator, where one instruction takes one cycle: flash wait states are not counted. An
+update is one complete scan with everything that follows from it: pack step, actions, CAN, and the passes of the main loop in between.
+"Longest pass" is what the main loop was ever kept busy for, from one look at everything to the next.
+TEXT
+    local board
+    for board in lv-f072 hv-f405; do image_build $board; done
+    image_table lv-f072 ebike-13s 120s "A bq7694003 with 13 cells, four updates a second."
+    image_table hv-f405 tools/bench/speed.ini 60s "32 bq76PL536 with 192 cells, ten updates a second."
+}
+
 for tool in valgrind python3; do
     have $tool || { echo "bench: $tool is needed" >&2; exit 1; }
 done

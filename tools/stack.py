@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Worst-case stack of every entry point of the library, from the call graph that gcc writes (-fcallgraph-info).
 
-    tools/stack.py [--cc CC] [--flags=FLAGS] [--targets FILE] [--top N] [--limit BYTES] [SOURCE...]
+    tools/stack.py [--cc CC] [--flags=FLAGS] [--targets FILE] [--board FILE] [--top N] [--limit BYTES] [SOURCE...]
 
 Without sources, all of src/ and drivers/bq*/ is compiled with -Os. Exit status 1, with a line PROBLEM for each, on
     recursion (direct, or through a table of functions),
@@ -15,7 +15,9 @@ Exit status 77 where the compiler cannot write a call graph (clang).
 The target file has one line for each kind of call through a pointer:
     PATH-PREFIX MEMBER TARGET...
 MEMBER is the name that is called; TARGET is a function of the library, or the word board for a call that leaves the
-library. What the board's functions need on the stack comes on top.
+library. What the board's functions need on the stack comes on top, unless they are among the sources and a file for
+--board says for each MEMBER which functions the word board stands for; targets that this board does not link are
+passed over then.
 """
 import argparse
 import pathlib
@@ -46,9 +48,9 @@ def readable(path):
 
 
 class Graph:
-    def __init__(self, targets):
+    def __init__(self, targets, board=None):
         self.frame, self.dynamic, self.edges, self.calls, self.problems = {}, set(), {}, {}, set()
-        self.targets, self.depths = targets, {}
+        self.targets, self.board, self.depths = targets, board, {}
 
     def read(self, ci, source):
         lines = pathlib.Path(source).read_text().split("\n")
@@ -72,8 +74,10 @@ class Graph:
         for rule in self.targets:
             if path.startswith(readable(rule[0])) and member == rule[1]:
                 wanted = [name for name in rule[2:] if name != "board"]
+                if self.board is not None and "board" in rule:
+                    wanted += self.board.get(member, [])
                 found = [title for title in self.frame if plain(title) in wanted]
-                for name in set(wanted) - {plain(title) for title in found}:
+                for name in set(wanted) - {plain(title) for title in found} if self.board is None else ():
                     self.problems.add(f"target {name} of {path} {member} does not exist")
                 return found
         self.problems.add(f"undeclared call through a pointer: {path}:{line}: {member}, in {short(caller)}")
@@ -127,19 +131,25 @@ def compile_graph(options, graph):
             graph.read(target.with_suffix(".ci"), source)
 
 
+def words(file):
+    lines = file.read_text().split("\n")
+    return [tuple(line.split()) for line in lines if line.strip() and not line.startswith("#")]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cc", default="gcc")
     parser.add_argument("--flags", default="-Os")
     parser.add_argument("--targets", type=pathlib.Path, default=ROOT / "tools/stack.targets")
+    parser.add_argument("--board", type=pathlib.Path)
     parser.add_argument("--top", type=int, default=0, help="print the N deepest entries only")
     parser.add_argument("--limit", type=int, default=0, help="deepest stack allowed, bytes")
     parser.add_argument("sources", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
 
-    lines = options.targets.read_text().split("\n")
-    rules = [tuple(line.split()) for line in lines if line.strip() and not line.startswith("#")]
-    graph = Graph(rules)
+    rules = words(options.targets)
+    board = {rule[0]: list(rule[1:]) for rule in words(options.board)} if options.board else None
+    graph = Graph(rules, board)
     compile_graph(options, graph)
     entries = graph.entries()
     for size, path in entries[:options.top or None]:
