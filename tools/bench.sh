@@ -286,7 +286,7 @@ for tool in valgrind python3; do
     have $tool || { echo "bench: $tool is needed" >&2; exit 1; }
 done
 build table16 bench
-for part in bus instruction size afe_size stack speed; do
+for part in bus instruction size afe_size stack speed image; do
     "${part}_part" >>"$page"
 done
 cp "$page" "$out"

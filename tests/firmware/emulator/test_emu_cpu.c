@@ -30,6 +30,20 @@ static void test_each_instruction_is_one_cycle(void)
     TEST_ASSERT_EQUAL(125000, emu_now(e));
 }
 
+/* One instruction before the loop; its two share the rest (movs, then subs and bne). */
+static void test_executions_are_counted_at_each_address(void)
+{
+    e = START(&emu_f072, &w, code_count);
+    TEST_ASSERT_EQUAL(0, emu_code_count(e, CODE));
+    TEST_ASSERT_TRUE(emu_count_code(e));
+    TEST_ASSERT_EQUAL(EMU_STOP_TIME, image_run(e, 101u * 125u));
+    TEST_ASSERT_EQUAL(1, emu_code_count(e, CODE));
+    TEST_ASSERT_EQUAL(50, emu_code_count(e, CODE + 2));
+    TEST_ASSERT_EQUAL(50, emu_code_count(e, CODE + 4));
+    TEST_ASSERT_EQUAL(0, emu_code_count(e, CODE + 6));
+    TEST_ASSERT_EQUAL(0, emu_code_count(e, 0x20000000u));
+}
+
 static void test_it_can_stop_at_every_instruction(void)
 {
     e = START(&emu_f072, &w, code_count);
@@ -242,6 +256,7 @@ int main(void)
 #endif
     UNITY_BEGIN();
     RUN_TEST(test_each_instruction_is_one_cycle);
+    RUN_TEST(test_executions_are_counted_at_each_address);
     RUN_TEST(test_it_can_stop_at_every_instruction);
     RUN_TEST(test_sleep_jumps_to_the_next_event);
     RUN_TEST(test_sleep_without_any_event_lasts_till_the_end);

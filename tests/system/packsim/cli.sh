@@ -207,6 +207,8 @@ option_refused 'cell_ov_mv' good.ini --set limits.cell_ov_mv=high
 option_refused 'unknown option' good.ini --frobnicate
 option_refused 'needs an argument' good.ini --csv
 option_refused 'not a time' good.ini --duration 10
+option_refused 'needs --image' good.ini --costs costs
+option_refused 'not an address' good.ini --image none.bin --loop here
 option_refused 'not a whole number' good.ini --seed x
 option_refused 'more than one' good.ini good.ini
 option_refused 'no scenario' --quiet
