@@ -217,7 +217,8 @@ bq_status bq76pl536_poll(bq76pl536 *d, uint32_t *wait_us)
         blocked = d->sent; /* at most one packet, even one the back-end refused */
     }
     if (d->io == PL_IO_TRANSFER) {
-        uint32_t passed = d->now_us - d->wait_from_us;
+        /* a polled back-end has completed it inside start, and the clock has moved on */
+        uint32_t passed = d->clock.now_us(d->clock.ctx) - d->wait_from_us;
         left = transfer_us(d) > passed ? transfer_us(d) - passed : 0u;
     } else if (d->io == PL_IO_WAIT && left == 0u) {
         left = d->wait_us; /* began just now */

@@ -65,7 +65,9 @@ static void watch_cells(ps_run *u, const bq_sample *s)
 {
     const ps_rig *r = u->rig;
     uint32_t age_us = (uint32_t)(ps_rig_now(r) / 1000u) - s->t_us;
-    uint64_t t = r->monitor->conversion(r, ps_rig_now(r) - (uint64_t)age_us * 1000u);
+    /* the last nanosecond of the microsecond that the firmware knows: what changed at its beginning was
+     * measured */
+    uint64_t t = r->monitor->conversion(r, (ps_rig_now(r) / 1000u - age_us) * 1000u + 999u);
     const double *truth = t != UINT64_MAX ? ps_rig_truth(r, t) : NULL;
     if (truth == NULL) {
         return;
