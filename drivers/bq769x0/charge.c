@@ -3,33 +3,50 @@
 #include "x0_internal.h"
 #include <string.h>
 
-/* One result that was just fetched. Its time is measured by the host's clock (X0-AMB-99); windows that the
- * clock says were lost are filled with the mean of their neighbours. */
+/* One result that was just fetched. d->counting.ms is where its window began at the latest: a window is
+ * counted as what it is long, not as what passed between two looks. Windows that the clock says were lost are
+ * filled with the mean of their neighbours (X0-AMB-99). */
 void x0_count_charge(bq769x0 *d)
 {
-    uint32_t ms = d->cc_ms - d->charge_ms, windows = (ms + X0_SCAN_MS / 2u) / X0_SCAN_MS, own = ms;
+    bq769x0_counting *t = &d->counting;
+    uint32_t ms = d->now_ms - t->ms, windows = ms / X0_SCAN_MS;
     int32_t ma = bq769x0_current_ma(d->cc_code, d->config.shunt_uohm);
-    int32_t before = bq769x0_current_ma(d->charge_code, d->config.shunt_uohm);
-    if (windows > 1u) {
-        own = ms / windows;
-        if (d->charge.results != 0u) {
-            d->charge.missed += windows - 1u;
-            d->charge.uas += (int64_t)((before + ma) / 2) * (int32_t)(ms - own);
-        }
+    int32_t before = bq769x0_current_ma(t->code, d->config.shunt_uohm);
+    if (windows == 0u) { /* earlier than thought: so are all that follow */
+        windows = 1;
+        t->ms = d->now_ms;
+    } else {
+        t->ms += windows * X0_SCAN_MS;
     }
-    d->charge.uas += (int64_t)ma * (int32_t)own;
-    x0_bump(&d->charge.results);
-    d->charge_code = d->cc_code;
+    if (windows > 1u && t->charge.results != 0u) {
+        t->charge.missed += windows - 1u;
+        t->charge.uas += (int64_t)((before + ma) / 2) * (int32_t)((windows - 1u) * X0_SCAN_MS);
+    }
+    t->charge.uas += (int64_t)ma * (int32_t)X0_SCAN_MS;
+    x0_bump(&t->charge.results);
+    t->code = d->cc_code;
+}
+
+/* After each look at the counter: without a result the window that runs began less than its length ago. */
+void x0_look_for_charge(bq769x0 *d)
+{
+    bq769x0_counting *t = &d->counting;
+    if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
+        x0_count_charge(d);
+    } else if (d->now_ms - t->ms > X0_SCAN_MS) {
+        t->ms = d->now_ms - X0_SCAN_MS;
+    }
 }
 
 const bq769x0_charge *bq769x0_get_charge(const bq769x0 *d)
 {
-    return &d->charge;
+    return &d->counting.charge;
 }
 
 void bq769x0_charge_reset(bq769x0 *d)
 {
-    memset(&d->charge, 0, sizeof d->charge);
+    bq769x0_counting *t = &d->counting;
+    memset(&t->charge, 0, sizeof t->charge);
 }
 
 bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)

@@ -17,8 +17,9 @@ enum {
 
 void x0_die_reset(bq769x0 *d)
 {
-    d->die_phase = DIE_REST;
-    d->die_looked = d->die_known = d->die_hot = d->die_fault = d->temp_held = false;
+    bq769x0_die *t = &d->die;
+    t->phase = DIE_REST;
+    t->looked = t->known = d->die_hot = t->fault = d->temp_held = false;
 }
 
 static bool settled(const bq769x0 *d)
@@ -29,14 +30,15 @@ static bool settled(const bq769x0 *d)
 /* The registers of the thermistors count again; or the values that stand in have become too old. */
 void x0_die_before_picture(bq769x0 *d)
 {
-    if (d->die_phase == DIE_BACK && settled(d)) {
-        d->die_phase = DIE_REST;
+    bq769x0_die *t = &d->die;
+    if (t->phase == DIE_BACK && settled(d)) {
+        t->phase = DIE_REST;
         d->temp_held = false;
     }
-    if (d->die_phase != DIE_REST && d->now_ms - d->hold_ms > HOLD_MS) {
+    if (t->phase != DIE_REST && d->now_ms - t->hold_ms > HOLD_MS) {
         d->temp_held = d->temp_settled = false;
-        if (d->die_phase != DIE_BACK) {
-            d->die_phase = DIE_RETURN;
+        if (t->phase != DIE_BACK) {
+            t->phase = DIE_RETURN;
             d->temp_ms = d->now_ms; /* nothing in the registers counts until it is known whose it is */
         }
     }
@@ -49,35 +51,36 @@ static bool over(bool before, int dc, int limit_dc)
 
 /* The hottest of the sensors. What no working sensor gives counts as too hot to balance,
  * but not as a temperature. */
-static void judge(bq769x0 *d, const uint16_t *codes)
+static void judge(bq769x0 *d)
 {
+    bq769x0_die *t = &d->die;
     const bq769x0_config *c = &d->config;
+    const uint16_t *codes = &d->fresh[X0_TS];
     unsigned lowest = 0x3fff;
     for (unsigned i = 0; i < d->groups; i++) {
         lowest = codes[i] < lowest ? codes[i] : lowest;
     }
-    d->die_dc = bq769x0_die_dc((uint16_t)lowest, d->config.die_v25_uv);
-    d->die_looked = true;
-    d->die_known = d->die_dc > -500 && d->die_dc < 1750;
-    d->die_ms = d->now_ms;
-    d->die_hot =
-        !d->die_known || over(d->die_hot, d->die_dc, c->die_limit_dc != 0 ? c->die_limit_dc : LIMIT_DC);
-    d->die_fault =
-        d->die_known && over(d->die_fault, d->die_dc, c->die_fault_dc != 0 ? c->die_fault_dc : FAULT_DC);
+    t->dc = bq769x0_die_dc((uint16_t)lowest, d->config.die_v25_uv);
+    t->looked = true;
+    t->known = t->dc > -500 && t->dc < 1750;
+    t->ms = d->now_ms;
+    d->die_hot = !t->known || over(d->die_hot, t->dc, c->die_limit_dc != 0 ? c->die_limit_dc : LIMIT_DC);
+    t->fault = t->known && over(t->fault, t->dc, c->die_fault_dc != 0 ? c->die_fault_dc : FAULT_DC);
 }
 
 /* Right after a picture. */
 void x0_die_after_picture(bq769x0 *d)
 {
+    bq769x0_die *t = &d->die;
     bool of_the_die =
-        d->config.sensors == 0u ? d->temp_valid : d->die_phase == DIE_LOOK && settled(d) && d->valid;
+        d->config.sensors == 0u ? d->temp_valid : t->phase == DIE_LOOK && settled(d) && d->valid;
     if (of_the_die) {
-        judge(d, &d->code[d->temp_held ? X0_DIE : X0_TS]);
-        if (d->die_phase == DIE_LOOK) {
-            d->die_phase = DIE_RETURN;
+        judge(d);
+        if (t->phase == DIE_LOOK) {
+            t->phase = DIE_RETURN;
         }
     }
-    if (d->die_fault) {
+    if (t->fault) {
         d->faults |= BQ_F_DIE_TEMP;
     }
 }
@@ -85,16 +88,18 @@ void x0_die_after_picture(bq769x0 *d)
 /* While balancing is asked for, and until a die that was too hot has been seen cooler. */
 static bool due(const bq769x0 *d)
 {
+    const bq769x0_die *t = &d->die;
     uint32_t period_s = d->config.die_check_s != 0u ? d->config.die_check_s : 60u;
-    return d->die_phase == DIE_REST && d->config.sensors != 0u && period_s != BQ769X0_DIE_NEVER &&
+    return t->phase == DIE_REST && d->config.sensors != 0u && period_s != BQ769X0_DIE_NEVER &&
            d->temp_valid && (d->asked != 0u || d->die_hot) &&
-           (!d->die_looked || d->now_ms - d->die_ms >= period_s * 1000u);
+           (!t->looked || d->now_ms - t->ms >= period_s * 1000u);
 }
 
 /* The consequences, at the end of a scan: switches off, the source switched over. A switch-over that fails
  * leaves DIE_RETURN: the next scan selects the thermistors. */
 int x0_job_die(bq769x0 *d, bq769x0_frame *f)
 {
+    bq769x0_die *t = &d->die;
     SEQ_BEGIN(f)
     if (d->die_hot && d->balance != 0u) {
         x0_balance(d, 0);
@@ -102,16 +107,16 @@ int x0_job_die(bq769x0 *d, bq769x0_frame *f)
     }
     if (due(d)) {
         d->temp_held = true;
-        d->hold_ms = d->now_ms;
-        d->die_phase = DIE_RETURN;
+        t->hold_ms = d->now_ms;
+        t->phase = DIE_RETURN;
         d->want[BQ769X0_SYS_CTRL1] &= (uint8_t)~BQ769X0_CTRL1_TEMP_SEL;
         SEQ_TRY(2, x0_set(d, BQ769X0_SYS_CTRL1, 1));
-        d->die_phase = DIE_LOOK;
+        t->phase = DIE_LOOK;
         d->temp_ms = d->now_ms;
-    } else if (d->die_phase == DIE_RETURN) {
+    } else if (t->phase == DIE_RETURN) {
         d->want[BQ769X0_SYS_CTRL1] |= BQ769X0_CTRL1_TEMP_SEL;
         SEQ_TRY(3, x0_set(d, BQ769X0_SYS_CTRL1, 1));
-        d->die_phase = DIE_BACK;
+        t->phase = DIE_BACK;
         d->temp_ms = d->now_ms;
     }
     return BQ_OK;
@@ -120,10 +125,11 @@ int x0_job_die(bq769x0 *d, bq769x0_frame *f)
 
 bq_status bq769x0_get_die(const bq769x0 *d, int16_t *dc, uint32_t *age_ms)
 {
-    if (!d->die_known) {
+    const bq769x0_die *t = &d->die;
+    if (!t->known) {
         return BQ_E_STALE;
     }
-    *dc = d->die_dc;
-    *age_ms = d->now_ms - d->die_ms;
+    *dc = t->dc;
+    *age_ms = d->now_ms - t->ms;
     return BQ_OK;
 }

@@ -72,12 +72,15 @@ static void step(bq769x0 *d)
     d->top = f;
 }
 
+#define PATIENCE_US 200000 /* with a transfer that does not end */
+#define AGAIN_US 50        /* between two looks at one that should have ended */
+
 /* Whether the transfer under way goes on. */
 static bool on_the_bus(bq769x0 *d)
 {
     d->transfer = d->i2c.ops->poll(d->i2c.ctx);
     if (d->transfer == BQ_PENDING) {
-        if ((int32_t)(d->due_us - d->now_us) > 0) {
+        if ((int32_t)(d->now_us - d->due_us) < PATIENCE_US) {
             return true;
         }
         d->transfer = BQ_E_TIMEOUT;
@@ -89,8 +92,11 @@ static bool on_the_bus(bq769x0 *d)
 /* Steps until a transfer goes out, a time must pass, or all is done; tells how long to wait. */
 static uint32_t go_on(bq769x0 *d)
 {
-    while (d->top->job != NULL && !d->busy) {
+    while (d->top->job != NULL) {
         int32_t left = (int32_t)(d->due_us - d->now_us);
+        if (d->busy && left < AGAIN_US) {
+            left = AGAIN_US;
+        }
         if (left > 0) {
             return (uint32_t)left;
         }

@@ -31,6 +31,7 @@ static const bq_field fields[] = {
     U(balance_max),
     B(counter_off),
     B(balance_across_groups),
+    B(balance_external),
     B(keep_fets),
     S(die_limit_dc),
     S(die_fault_dc),

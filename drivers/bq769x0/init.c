@@ -19,9 +19,9 @@ static bool wired(const bq769x0_config *c, unsigned in_use)
     return (in_use & fed) == fed && in_use >> c->inputs == 0u && x0_bits(in_use) == c->cells;
 }
 
-static bool in_range(const bq769x0_config *c)
+static bool in_range(const bq769x0_config *c, unsigned groups)
 {
-    return c->sensors <= c->inputs / 5u && (c->sensors == 0u || c->thermistor != NULL) &&
+    return c->sensors <= groups && (c->sensors == 0u || c->thermistor != NULL) &&
            c->shunt_uohm - 100u <= 100000u - 100u;
 }
 
@@ -29,12 +29,13 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
                   const bq_clock *clock)
 {
     bq769x0_current_limits current;
+    unsigned groups = config->inputs / 5u;
     uint8_t protect3;
     bq_status st;
     if (!wired(config, in_use)) {
         return BQ_E_CELLS;
     }
-    if (!in_range(config)) {
+    if (!in_range(config, groups)) {
         return BQ_E_RANGE;
     }
     st = bq769x0_current_codes(bq769x0_shunt_uv(config->ocd_ma, config->shunt_uohm), config->ocd_delay_ms,
@@ -57,7 +58,7 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     d->inputs = config->inputs;
     d->cells = config->cells;
     d->temps = config->sensors != 0u ? config->sensors : 1u;
-    d->groups = config->inputs / 5u;
+    d->groups = (uint8_t)groups;
     d->address7 = d->achieved.address7 = config->address7;
     d->crc = d->achieved.crc = config->crc == BQ769X0_CRC_ON;
     d->gain2_q15 = 32768u;
@@ -65,7 +66,6 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     d->top->catches = true; /* no job: the end of every failure */
     d->i2c = *i2c;
     d->clock = *clock;
-    d->now_us = clock->now_us(clock->ctx);
     return BQ_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The measurement cycle: status, all measurements, clearing of the fetched result (X0-SEQ-21..23). */
 #include "x0_internal.h"
+#include <string.h>
 
 void x0_invalidate(bq769x0 *d, uint16_t fault)
 {
@@ -8,20 +9,16 @@ void x0_invalidate(bq769x0 *d, uint16_t fault)
     d->faults |= fault;
 }
 
-/* `n` codes from x0_data() to d->code. Upper bits of cells and temperatures are no data (X0-BIT-16). While
- * the temperatures are held, those of the other source go behind all others. */
+/* `n` codes from x0_data() to d->fresh. Upper bits of cells and temperatures are no data (X0-BIT-16). */
 static void take_codes(bq769x0 *d, unsigned first, unsigned n)
 {
     const uint8_t *p = x0_data(d);
     for (n += first; first < n; first++, p += 2) {
-        unsigned code = (unsigned)p[0] << 8 | p[1], at = first;
+        unsigned code = (unsigned)p[0] << 8 | p[1];
         if (first != X0_BAT && first != X0_CC) {
             code &= 0x3fffu;
         }
-        if (d->temp_held && first >= X0_TS && first < X0_CC) {
-            at += X0_DIE - X0_TS;
-        }
-        d->code[at] = (uint16_t)code;
+        d->fresh[first] = (uint16_t)code;
     }
 }
 
@@ -30,23 +27,28 @@ static void take_codes(bq769x0 *d, unsigned first, unsigned n)
 static bool plausible(const bq769x0 *d)
 {
     uint32_t sum = 0;
-    for (unsigned i = 0; i < d->inputs; i++) {
-        sum += d->code[i];
+    for (unsigned i = 0; i < X0_BAT; i++) {
+        sum += d->fresh[i];
     }
-    return sum != 0u && d->code[X0_BAT] + 1u - sum / 4u <= 2u;
+    return sum != 0u && d->fresh[X0_BAT] + 1u - sum / 4u <= 2u;
 }
 
+/* What is refused leaves the codes of the last good picture alone, and so does another source of the
+ * temperatures. */
 static void take_picture(bq769x0 *d)
 {
-    d->valid = plausible(d);
-    if (!d->valid) {
+    bool good = plausible(d);
+    if (!good) {
         x0_bump(&d->stats.implausible);
     }
-    if ((d->stat & BQ769X0_STAT_XREADY) != 0u) {
-        d->valid = false;
+    d->valid = good && (d->stat & BQ769X0_STAT_XREADY) == 0u;
+    if (d->valid) {
+        d->measured = true;
+        memcpy(d->code, d->fresh, (d->temp_held ? X0_TS : X0_CC) * sizeof d->code[0]);
     }
-    d->measured |= d->valid;
-    d->temp_settled |= d->now_ms - d->temp_ms >= X0_TEMP_MS;
+    if (d->now_ms - d->temp_ms >= X0_TEMP_MS) {
+        d->temp_settled = true;
+    }
     d->temp_valid = d->valid && d->temp_settled;
     d->balanced = d->balance;
     d->picture_ms = d->now_ms;
@@ -86,7 +88,7 @@ int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
         }
     }
     if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
-        x0_take_current(d, d->code[X0_CC]);
+        x0_take_current(d, d->fresh[X0_CC]);
     }
     return BQ_OK;
     SEQ_END;

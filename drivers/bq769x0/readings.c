@@ -9,16 +9,17 @@ uint32_t x0_cell_mv(const bq769x0 *d, unsigned input)
     return (mv * d->gain2_q15 + 16384u) >> 15;
 }
 
-/* Quality of a value of this picture that is `bad` for the reason given, or `doubtful`. */
-uint8_t x0_quality(bool measured, unsigned bad, bool doubtful)
+/* Quality of a value of this picture that is `bad` for the reason given, or `doubtful`. One that was not
+ * measured: the part did not answer, or it did and what it says does not count. */
+uint8_t x0_quality(const bq769x0 *d, bool measured, unsigned bad, bool doubtful)
 {
     if (!measured) {
-        return BQ_Q_COMM;
+        return (d->faults & BQ_F_COMM) != 0u ? BQ_Q_COMM : BQ_Q_CHIP;
     }
     if (bad != 0u) {
         return (uint8_t)bad;
     }
-    return doubtful ? BQ_Q_VALID | BQ_Q_RANGE : BQ_Q_VALID;
+    return doubtful ? BQ_Q_VALID | BQ_Q_OUTSIDE : BQ_Q_VALID;
 }
 
 /* A dead cell or broken wire: the part itself ignores it (X0-UV-08). Accuracy is stated for 2 to 5 V only
@@ -34,7 +35,7 @@ void x0_read_cell(const bq769x0 *d, bq_cell_reading *c, unsigned input)
     }
     c->mv = (uint16_t)mv;
     c->module = 0;
-    c->quality = x0_quality(d->valid, bad, mv - 2000u > 3000u);
+    c->quality = x0_quality(d, d->valid, bad, mv - 2000u > 3000u);
 }
 
 void x0_read_temp(const bq769x0 *d, bq_temp_reading *t, uint16_t code)
@@ -48,6 +49,6 @@ void x0_read_temp(const bq769x0 *d, bq_temp_reading *t, uint16_t code)
         st = st == BQ_OK ? bq_thermistor_dc(d->config.thermistor, ohms, &t->dc) : st;
     }
     t->module = 0;
-    t->quality =
-        x0_quality(d->temp_valid, st != BQ_OK ? BQ_Q_SENSOR : 0u, code - 785u > 7853u - 785u); /* X0-TS-07 */
+    t->quality = x0_quality(d, d->temp_valid, st != BQ_OK ? BQ_Q_SENSOR : 0u,
+                            code - 785u > 7853u - 785u); /* X0-TS-07 */
 }

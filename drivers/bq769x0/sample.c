@@ -12,19 +12,28 @@ uint16_t x0_flags(unsigned events)
                       (events & 0x20u) / BQ769X0_STAT_XREADY * BQ_F_MEMORY);
 }
 
+/* Group by group: each must supply the part with 6 to 25 V (X0-ELEC-01). The top input of a group always
+ * carries a cell. */
 static void fill_cells(const bq769x0 *d, bq_cell_reading *c, bq_module_reading *m)
 {
-    unsigned in_use = d->in_use;
-    for (unsigned i = 0; in_use != 0u; i++, in_use >>= 1) {
-        if ((in_use & 1u) != 0u) {
-            x0_read_cell(d, c, i);
-            m->stack_mv += c->mv;
-            if (c->quality == BQ_Q_OPEN_WIRE) {
-                m->faults |= BQ_F_OPEN_WIRE;
+    unsigned in_use = d->in_use, input = 0;
+    bool outside = false;
+    while (in_use != 0u) {
+        uint32_t group_mv = 0;
+        for (unsigned n = 5; n != 0u; n--, input++, in_use >>= 1) {
+            if ((in_use & 1u) != 0u) {
+                x0_read_cell(d, c, input);
+                group_mv += c->mv;
+                if (c->quality == BQ_Q_OPEN_WIRE) {
+                    m->faults |= BQ_F_OPEN_WIRE;
+                }
+                c++;
             }
-            c++;
         }
+        outside |= group_mv - 6000u > 25000u - 6000u;
+        m->stack_mv += group_mv;
     }
+    m->quality = x0_quality(d, d->valid, 0, outside);
 }
 
 static void fill_module(const bq769x0 *d, bq_module_reading *m)
@@ -33,7 +42,6 @@ static void fill_module(const bq769x0 *d, bq_module_reading *m)
     m->age_ms = d->now_ms - d->picture_ms + X0_SCAN_MS;
     m->faults = d->faults | x0_flags(x0_events(d));
     m->balancing = d->balanced;
-    m->quality = x0_quality(d->valid, 0, false);
 }
 
 bq_status bq769x0_sample(bq769x0 *d, bq_sample *s)

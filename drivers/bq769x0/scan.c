@@ -3,6 +3,8 @@
  * and the current in one shot (X0-SEQ-46). */
 #include "x0_internal.h"
 
+#define BLIND_MS 1000u
+
 /* Number that differs when any code of the picture does. */
 static uint32_t print_of(const bq769x0 *d)
 {
@@ -16,13 +18,14 @@ static uint32_t print_of(const bq769x0 *d)
 /* Counts pictures that did not change: once per scan of the part, however often the host looks. */
 static void compare_pictures(bq769x0 *d)
 {
+    bq769x0_watch *t = &d->watch;
     uint32_t print = print_of(d);
-    if (print != d->print) {
-        d->print = print;
-        d->same = 0;
-    } else if (d->now_ms - d->same_ms >= X0_SCAN_MS && d->same != UINT16_MAX) {
-        d->same++;
-        d->same_ms = d->now_ms;
+    if (print != t->print) {
+        t->print = print;
+        t->same = 0;
+    } else if (d->now_ms - t->same_ms >= X0_SCAN_MS && t->same != UINT16_MAX) {
+        t->same++;
+        t->same_ms = d->now_ms;
     }
 }
 
@@ -31,7 +34,7 @@ static bool stopped(const bq769x0 *d)
 {
     bool counter = (d->want[BQ769X0_SYS_CTRL2] & BQ769X0_CTRL2_CC_EN) != 0u &&
                    (d->stat & BQ769X0_STAT_CC_READY) == 0u && d->now_ms - d->cc_ms > 600u;
-    return counter || (d->config.frozen_scans != 0u && d->same >= d->config.frozen_scans);
+    return counter || (d->config.frozen_scans != 0u && d->watch.same >= d->config.frozen_scans);
 }
 
 static bool timer_over(const bq769x0 *d)
@@ -45,7 +48,7 @@ static int job_restart(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     x0_invalidate(d, BQ_F_LOCKUP);
-    d->same = 0;
+    d->watch.same = 0;
     d->want[BQ769X0_SYS_CTRL2] = 0; /* never the converter off with a FET on (X0-AMB-15) */
     x0_balance(d, 0);
     SEQ_TRY(1, x0_run(d, x0_job_off));
@@ -56,52 +59,79 @@ static int job_restart(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
+/* For a second nothing that could be believed, though the part should have had something to say (X0-SEQ-25).
+ */
+static bool blind(const bq769x0 *d)
+{
+    return !d->valid && x0_reached(d, d->data_ms) && d->now_ms - d->watch.good_ms > BLIND_MS &&
+           (x0_events(d) & BQ769X0_STAT_XREADY) == 0u;
+}
+
+/* What follows from a picture that was read. */
+static void judge_picture(bq769x0 *d)
+{
+    if (d->valid) {
+        d->watch.good_ms = d->now_ms;
+        compare_pictures(d);
+    }
+    x0_look_for_charge(d);
+    x0_die_after_picture(d);
+}
+
 int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     x0_die_before_picture(d);
     f->i = (uint8_t)d->sequence;
-    d->charge_ms = d->cc_ms;
-    SEQ_TRY(1, x0_run(d, x0_job_measure));
-    if (f->i != (uint8_t)d->sequence) {
-        compare_pictures(d);
-        if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
-            x0_count_charge(d);
+    SEQ_CALL(1, x0_run(d, x0_job_measure));
+    f->x = (uint8_t)-d->result;
+    if (f->x == 0u && f->i != (uint8_t)d->sequence) {
+        judge_picture(d);
+    }
+    if (blind(d)) {
+        d->faults |= f->x == 0u ? BQ_F_LOCKUP : 0u;
+        if ((d->want[BQ769X0_SYS_CTRL2] & BQ769X0_CTRL2_FETS) != 0u || d->balance != 0u) {
+            f->i = d->want[BQ769X0_SYS_CTRL2] & BQ769X0_CTRL2_FETS;
+            d->want[BQ769X0_SYS_CTRL2] &= (uint8_t)~BQ769X0_CTRL2_FETS;
+            x0_balance(d, 0);
+            SEQ_CALL(2, x0_run(d, x0_job_off));
+            if (d->result != BQ_OK) { /* still on, as far as is known: tried again with the next scan */
+                d->want[BQ769X0_SYS_CTRL2] |= f->i;
+            }
         }
-        x0_die_after_picture(d);
+    }
+    if (f->x != 0u) {
+        return -(int)f->x;
     }
     if (stopped(d)) {
-        SEQ_TRY(2, x0_run(d, x0_job_scrub)); /* after a reset it stands too, and that has its own name */
+        SEQ_TRY(3, x0_run(d, x0_job_scrub)); /* after a reset it stands too, and that has its own name */
     }
     if (stopped(d)) {
-        SEQ_TRY(3, x0_run(d, job_restart));
+        SEQ_TRY(4, x0_run(d, job_restart));
         return BQ_OK;
     }
     if (x0_events(d) != 0u) {
-        SEQ_TRY(4, x0_run(d, x0_job_service));
+        SEQ_TRY(5, x0_run(d, x0_job_service));
     }
     if (timer_over(d)) {
         d->asked = 0;
         x0_balance(d, 0);
         d->faults |= BQ_F_BALANCE;
-        SEQ_TRY(5, x0_run(d, x0_job_off));
+        SEQ_TRY(6, x0_run(d, x0_job_off));
     }
-    if (d->now_ms - d->scrub_ms >= X0_SCRUB_MS) {
-        SEQ_TRY(6, x0_run(d, x0_job_scrub));
+    /* while the part reports a fault of its own nothing is written to it; what follows is the whole
+     * configuration (X0-SEQ-35) */
+    if (d->now_ms - d->scrub_ms >= X0_SCRUB_MS && (d->held & BQ769X0_STAT_XREADY) == 0u) {
+        SEQ_TRY(7, x0_run(d, x0_job_scrub));
     }
-    SEQ_TRY(7, x0_run(d, x0_job_die));
+    SEQ_TRY(8, x0_run(d, x0_job_die));
     return BQ_OK;
     SEQ_END;
 }
 
-static void counter_on(bq769x0 *d)
-{
-    d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
-}
-
 /* A window that runs while the counter is switched off may still end with a result (X0-AMB-26): that one is
- * dropped. Afterwards the counter is as configured. */
-int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
+ * dropped. */
+static int job_convert(bq769x0 *d, bq769x0_frame *f)
 {
     uint8_t *ctrl2 = &d->want[BQ769X0_SYS_CTRL2];
     SEQ_BEGIN(f)
@@ -117,7 +147,6 @@ int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
         if (d->want[0] != 0u) {
             SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
         }
-        d->charge_ms = d->now_ms;
         *ctrl2 |= BQ769X0_CTRL2_CC_ONESHOT;
         SEQ_CALL(5, x0_once(d, BQ769X0_SYS_CTRL2, 1, false)); /* a lost answer shows as no result */
         *ctrl2 &= (uint8_t)~BQ769X0_CTRL2_CC_ONESHOT;
@@ -127,15 +156,27 @@ int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
             if ((d->answer & BQ769X0_STAT_CC_READY) != 0u) {
                 SEQ_TRY(8, x0_fetch(d, BQ769X0_CC_HI, 2));
                 x0_take_current(d, (uint16_t)((unsigned)d->answer << 8 | x0_data(d)[1]));
+                d->counting.ms = d->now_ms - X0_SCAN_MS;
                 x0_count_charge(d);
                 d->want[0] = BQ769X0_STAT_CC_READY;
                 SEQ_TRY(9, x0_put(d, BQ769X0_SYS_STAT, 1));
-                counter_on(d);
-                SEQ_TRY(10, x0_set(d, BQ769X0_SYS_CTRL2, 1));
                 return BQ_OK;
             }
         }
     }
     return BQ_E_TIMEOUT;
+    SEQ_END;
+}
+
+/* Afterwards the counter is as configured, whatever came of the conversion. */
+int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
+{
+    SEQ_BEGIN(f)
+    SEQ_CALL(1, x0_run(d, job_convert));
+    f->x = (uint8_t)-d->result;
+    d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
+    SEQ_TRY(2, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+    d->cc_ms = d->counting.ms = d->now_ms;
+    return -(int)f->x;
     SEQ_END;
 }

@@ -31,6 +31,7 @@ int x0_job_reload(bq769x0 *d, bq769x0_frame *f)
     d->want[BQ769X0_SYS_CTRL2] = 0;
     SEQ_TRY(1, x0_run(d, x0_job_configure));
     d->data_ms = d->now_ms + x0_first_ms(d) + X0_SCAN_MS;
+    d->counting.ms = d->now_ms;
     return BQ_OK;
     SEQ_END;
 }

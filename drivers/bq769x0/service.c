@@ -31,10 +31,11 @@ static bool cells_cured(const bq769x0 *d)
  * are no readings (X0-XRDY-04). */
 static bool cured(const bq769x0 *d)
 {
+    const bq769x0_trouble *t = &d->trouble;
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
         return true;
     }
-    return !d->locked && ((d->held & OVERCURRENT) == 0u || d->loads >= 4u) &&
+    return !t->locked && ((d->held & OVERCURRENT) == 0u || t->loads >= 4u) &&
            ((d->held & (BQ769X0_STAT_OV | BQ769X0_STAT_UV)) == 0u || cells_cured(d));
 }
 
@@ -46,15 +47,16 @@ static uint32_t longer(uint32_t a, uint32_t b)
 /* For how long it must have been gone: the longest of all that are held (X0-SEQ-36). */
 static uint32_t quiet_ms(const bq769x0 *d)
 {
+    const bq769x0_trouble *t = &d->trouble;
     uint32_t ms = (d->held & (BQ769X0_STAT_OV | BQ769X0_STAT_UV)) != 0u ? 2000u : 0u;
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
-        return 3000u << d->strikes;
+        return 3000u << t->strikes;
     }
     if ((d->held & OVERCURRENT) != 0u) {
-        ms = longer(ms, 250u << d->strikes);
+        ms = longer(ms, 250u << t->strikes);
     }
     if ((d->held & BQ769X0_STAT_OVRD_ALERT) != 0u) {
-        ms = longer(ms, d->again ? 5000u : 1000u);
+        ms = longer(ms, t->again ? 5000u : 1000u);
     }
     return ms;
 }
@@ -81,65 +83,68 @@ static uint32_t probation_ms(const bq769x0 *d)
  * (X0-SEQ-35). */
 static void take_event(bq769x0 *d, uint8_t set, bool back)
 {
-    d->again = back || (d->held == 0u && d->released && d->now_ms - d->event_ms < 10000u);
-    if (!d->again && d->held == 0u) {
-        d->strikes = 0;
-    } else if (d->again && d->strikes < STRIKES_MAX && (set & (OVERCURRENT | BQ769X0_STAT_XREADY)) != 0u) {
-        d->strikes++;
+    bq769x0_trouble *t = &d->trouble;
+    t->again = back || (d->held == 0u && t->released && d->now_ms - t->event_ms < 10000u);
+    if (!t->again && d->held == 0u) {
+        t->strikes = 0;
+    } else if (t->again && t->strikes < STRIKES_MAX && (set & (OVERCURRENT | BQ769X0_STAT_XREADY)) != 0u) {
+        t->strikes++;
     }
-    d->locked = d->locked || ((set & BQ769X0_STAT_SCD) != 0u && d->strikes >= STRIKES_MAX);
-    d->event_ms = d->held_ms = d->now_ms;
+    t->locked = t->locked || ((set & BQ769X0_STAT_SCD) != 0u && t->strikes >= STRIKES_MAX);
+    t->event_ms = t->held_ms = d->now_ms;
     d->held |= set;
-    d->probation = false;
-    d->loads = 0;
+    t->probation = false;
+    t->loads = 0;
     x0_balance(d, 0);
 }
 
 /* Looks for a load every 250 ms once the CHG pin had time to fall (X0-SEQ-32, X0-LOAD-05). */
 static bool load_due(const bq769x0 *d)
 {
+    const bq769x0_trouble *t = &d->trouble;
     uint32_t settle_ms = d->config.load_settle_ms != 0u ? d->config.load_settle_ms : 100u;
-    return (d->held & OVERCURRENT) != 0u && d->now_ms - d->event_ms >= settle_ms &&
-           (d->loads == 0u || d->now_ms - d->load_ms >= X0_SCAN_MS - 10u);
+    return (d->held & OVERCURRENT) != 0u && d->now_ms - t->event_ms >= settle_ms &&
+           (t->loads == 0u || d->now_ms - t->load_ms >= X0_SCAN_MS - 10u);
 }
 
 /* The bits stayed clear long enough. True for XREADY, which is released alone and before everything else. */
 static bool release(bq769x0 *d)
 {
+    bq769x0_trouble *t = &d->trouble;
     uint8_t gone = judged(d);
     d->held &= (uint8_t)~gone;
-    d->probation = false;
-    d->released = true;
-    d->event_ms = d->held_ms = d->now_ms;
+    t->probation = false;
+    t->released = true;
+    t->event_ms = t->held_ms = d->now_ms;
     return gone == BQ769X0_STAT_XREADY;
 }
 
 /* Runs once per scan while a fault bit is set or not yet released. d->stat was read at its beginning. */
 int x0_job_service(bq769x0 *d, bq769x0_frame *f)
 {
+    bq769x0_trouble *t = &d->trouble;
     SEQ_BEGIN(f)
-    if ((d->stat & BQ769X0_STAT_FAULTS & (d->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
+    if ((d->stat & BQ769X0_STAT_FAULTS & (t->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
         /* the register byte of a read carries no CRC (X0-I2C-16): a new bit counts when it is read twice */
         SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_STAT, 1));
         d->stat &= d->answer;
     }
     f->i = d->stat & BQ769X0_STAT_FAULTS;
-    f->x = d->probation && (f->i & judged(d)) != 0u;
+    f->x = t->probation && (f->i & judged(d)) != 0u;
     if ((f->i & ~d->held) != 0u || f->x != 0u) {
         take_event(d, f->i, f->x != 0u);
         SEQ_TRY(2, x0_run(d, x0_job_off));
     }
-    d->faults |= x0_flags(d->held);
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
         x0_invalidate(d, 0); /* X0-XRDY-04 */
-        if (d->strikes > 2u) {
+        if (t->strikes > 2u) {
             d->faults |= BQ_F_DEFECTIVE;
             SEQ_TRY(3, x0_run(d, x0_job_ship));
             return BQ_E_DEFECTIVE; /* another start boots it again */
         }
     }
-    if (d->probation) {
-        if (d->now_ms - d->held_ms >= probation_ms(d)) {
+    if (t->probation) {
+        if (d->now_ms - t->held_ms >= probation_ms(d)) {
             if (release(d)) {
                 SEQ_TRY(4, x0_run(d, x0_job_reload));
                 d->data_ms = d->now_ms + 2000u + X0_SCAN_MS; /* X0-AMB-66 */
@@ -149,22 +154,22 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     }
     if (load_due(d)) {
         SEQ_TRY(5, x0_fetch(d, BQ769X0_SYS_CTRL1, 1));
-        d->load_ms = d->now_ms;
-        d->loads = (d->answer & BQ769X0_CTRL1_LOAD_PRESENT) != 0u ? 0u
-                   : d->loads < 4u                                ? (uint8_t)(d->loads + 1u)
-                                                                  : d->loads;
+        t->load_ms = d->now_ms;
+        t->loads = (d->answer & BQ769X0_CTRL1_LOAD_PRESENT) != 0u ? 0u
+                   : t->loads < 4u                                ? (uint8_t)(t->loads + 1u)
+                                                                  : t->loads;
     }
     if (!cured(d)) {
-        d->held_ms = d->now_ms;
+        t->held_ms = d->now_ms;
         return BQ_OK;
     }
-    if (d->now_ms - d->held_ms >= quiet_ms(d)) {
+    if (d->now_ms - t->held_ms >= quiet_ms(d)) {
         d->want[0] = d->stat & judged(d); /* exactly what was read as set (X0-BIT-09) */
         if (d->want[0] != 0u) {
             SEQ_TRY(6, x0_put(d, BQ769X0_SYS_STAT, 1));
         }
-        d->probation = true;
-        d->held_ms = d->now_ms;
+        t->probation = true;
+        t->held_ms = d->now_ms;
     }
     return BQ_OK;
     SEQ_END;
@@ -172,8 +177,9 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
 
 void bq769x0_unlock(bq769x0 *d)
 {
-    d->locked = false;
-    d->strikes = 0; /* the release conditions still have to hold */
+    bq769x0_trouble *t = &d->trouble;
+    t->locked = false;
+    t->strikes = 0; /* the release conditions still have to hold */
 }
 
 /* SYS_CTRL2 as wanted but without FETs that are not allowed now, and the switches of d->balance, verified.

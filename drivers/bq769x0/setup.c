@@ -34,15 +34,25 @@ static bq_status check(const bq769x0_config *c)
     if (!in_range(c) || !die_in_range(c)) {
         return BQ_E_RANGE;
     }
+    if (c->sensors != 0u && c->thermistor != NULL &&
+        (c->thermistor->ohms == NULL || c->thermistor->count < 2u)) {
+        return BQ_E_CONFIG;
+    }
     return c->uv_recover_mv < c->ov_mv && c->ov_recover_mv > c->uv_mv ? BQ_OK : BQ_E_CONFIG;
+}
+
+static bool complete(const bq_i2c *i2c, const bq_gpio *gpio, const bq_clock *clock)
+{
+    bool bus = i2c != NULL && i2c->ops != NULL && i2c->ops->start != NULL && i2c->ops->poll != NULL;
+    bool lines = gpio == NULL || gpio->ops == NULL || (gpio->ops->read != NULL && gpio->ops->write != NULL);
+    return bus && lines && clock != NULL && clock->now_us != NULL;
 }
 
 bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c, const bq_gpio *gpio,
                        const bq_clock *clock)
 {
     bq_status st;
-    if (d == NULL || config == NULL || i2c == NULL || i2c->ops == NULL || clock == NULL ||
-        clock->now_us == NULL) {
+    if (d == NULL || config == NULL || !complete(i2c, gpio, clock)) {
         return BQ_E_ARG;
     }
     st = check(config);
@@ -59,9 +69,6 @@ bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i
     }
     if (config->balance_across_groups) {
         d->apart = borders(d->in_use);
-    }
-    if (config->die_v25_uv != 0u) {
-        d->config.die_v25_uv = config->die_v25_uv;
     }
     return BQ_OK;
 }
@@ -100,4 +107,15 @@ bool bq769x0_alert_pending(const bq769x0 *d)
 const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d)
 {
     return &d->achieved;
+}
+
+unsigned bq769x0_config_warnings(const bq769x0_config *c)
+{
+    unsigned warnings = c->inputs > 5u && !c->balance_external ? BQ769X0_WARN_BALANCE : 0u;
+    return warnings | (bq769x0_shunt_uv(c->scd_ma, c->shunt_uohm) > 300000u ? BQ769X0_WARN_SHUNT : 0u);
+}
+
+bool bq769x0_current_outside(const bq769x0 *d)
+{
+    return d->cc_code > 23696 || d->cc_code < -23696;
 }

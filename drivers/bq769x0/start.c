@@ -25,7 +25,7 @@ int x0_job_boot(bq769x0 *d, bq769x0_frame *f)
     SEQ_YIELD(1, x0_wait(d, 1000u));
     x0_drive(d, BQ_LINE_AFE_BOOT, true);
     d->data_ms = d->now_ms + 11u + x0_first_ms(d); /* the clock drops fractions */
-    d->fresh_boot = true;
+    d->watch.fresh_boot = true;
     SEQ_YIELD(2, x0_wait(d, 2500u));
     x0_drive(d, BQ_LINE_AFE_BOOT, false);
     SEQ_YIELD(3, x0_wait(d, 12000u));
@@ -75,7 +75,7 @@ static void ask(bq769x0 *d, uint8_t address7)
 static int job_identify(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < (d->fresh_boot ? 10u : X0_TRIES); f->tries++) {
+    for (f->tries = 0; f->tries < (d->watch.fresh_boot ? 10u : X0_TRIES); f->tries++) {
         for (f->i = 0; f->i < 2u; f->i++) {
             f->x = f->i == 0u ? 0x08u : 0x18u;
             if (d->config.address7 != 0u && d->config.address7 != f->x) {
@@ -90,7 +90,7 @@ static int job_identify(bq769x0 *d, bq769x0_frame *f)
         if (d->result != BQ_E_NACK || f->tries == 1u) {
             x0_recover(d);
         }
-        SEQ_YIELD(3, x0_wait(d, d->fresh_boot ? 5000u : 1000u)); /* 50 ms after a boot (X0-SEQ-03) */
+        SEQ_YIELD(3, x0_wait(d, d->watch.fresh_boot ? 5000u : 1000u)); /* 50 ms after a boot (X0-SEQ-03) */
     }
     return BQ_E_NOT_FOUND;
     SEQ_END;
@@ -112,7 +112,7 @@ static int job_past(bq769x0 *d, bq769x0_frame *f)
         return BQ_E_IMPLAUSIBLE;
     }
     f->x = x0_data(d)[5] == 0xacu && x0_data(d)[6] == 0x97u && x0_data(d)[7] == 0u;
-    if (!d->fresh_boot && (f->x != 0u || (d->answer & BQ769X0_CTRL1_ADC_EN) == 0u)) {
+    if (!d->watch.fresh_boot && (f->x != 0u || (d->answer & BQ769X0_CTRL1_ADC_EN) == 0u)) {
         d->data_ms = d->now_ms + 12u + x0_first_ms(d) + X0_SCAN_MS;
         SEQ_YIELD(2, x0_wait(d, 12000u));
     }
@@ -149,7 +149,7 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
     while (!x0_reached(d, d->data_ms)) {
         SEQ_YIELD(1, x0_wait(d, 5000u));
     }
-    d->temp_settled = d->fresh_boot; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
+    d->temp_settled = d->watch.fresh_boot; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
     for (f->tries = 0; f->tries < 5u; f->tries++) {
         SEQ_TRY(2, x0_run(d, x0_job_picture));
         f->x = (uint8_t)!d->valid;
@@ -158,12 +158,13 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
             f->x |= (uint8_t)(carries != should);
         }
         if (f->x == 0u) {
+            d->watch.good_ms = d->now_ms;
             return BQ_OK;
         }
         SEQ_YIELD(3, x0_wait(d, 260000u));
     }
     d->valid = false;
-    return d->code[X0_BAT] == 0u ? BQ_E_STALE : BQ_E_CELLS;
+    return d->measured ? BQ_E_CELLS : BQ_E_STALE;
     SEQ_END;
 }
 
@@ -176,6 +177,7 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
     d->want[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->answer & BQ769X0_CTRL2_FETS : 0u;
     SEQ_TRY(2, x0_run(d, x0_job_configure));
     d->state = X0_STATE_NONE; /* not before the first picture */
+    d->counting.ms = d->now_ms;
     SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
     d->want[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
     if (d->want[0] != 0u) {
@@ -192,8 +194,9 @@ int x0_job_start(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     d->state = X0_STATE_NONE;
-    d->valid = d->measured = d->temp_valid = d->fresh_boot = d->probation = d->locked = false;
-    d->stat = d->held = d->strikes = d->want[BQ769X0_SYS_CTRL1] = 0;
+    d->valid = d->measured = d->temp_valid = d->watch.fresh_boot = d->trouble.probation = d->trouble.locked =
+        false;
+    d->stat = d->held = d->trouble.strikes = d->want[BQ769X0_SYS_CTRL1] = 0;
     d->faults = 0;
     x0_balance(d, 0);
     x0_die_reset(d);

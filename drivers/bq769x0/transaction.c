@@ -3,7 +3,7 @@
 #include "bqhost/crc8.h"
 #include "x0_internal.h"
 
-#define PATIENCE_US 200000u /* with a transfer that does not end */
+#define BYTE_US 90u /* eight bits and the acknowledgement at 100 kHz */
 
 /* Walks over the bytes in d->bus and leaves there what is to travel, or the data without CRC. With CRC each
  * data byte is followed by its own; the first also covers the address, and in a write the register
@@ -31,21 +31,21 @@ static bool walk(bq769x0 *d, const bq769x0_frame *f)
 
 void x0_send(bq769x0 *d, const bq769x0_frame *f)
 {
-    unsigned reading = f->n >> 7, length = (f->n & ~X0_READING) << d->crc;
+    unsigned reading = f->n >> 7, length = (f->n & ~X0_READING) << d->crc, bytes = length + 2u + reading;
     uint8_t *bus = d->bus;
     bus[0] = (uint8_t)(d->address7 * 2u + reading);
     bus[1] = f->reg;
     if (reading == 0u) {
         (void)walk(d, f);
     }
-    d->stats.bytes += length + 2u + reading;
+    d->stats.bytes += bytes;
     d->segments[1].len = (uint16_t)length;
     d->segments[1].data = bus + 2;
     d->segments[1].read = true;
     d->segments[0].len = (uint16_t)(reading != 0u ? 1u : length + 1u); /* the last one ends with STOP */
     d->segments[0].data = bus + 1;
     x0_bump(&d->stats.packets);
-    d->due_us = d->now_us + PATIENCE_US;
+    d->due_us = d->now_us + bytes * BYTE_US;
     d->transfer = d->i2c.ops->start(d->i2c.ctx, d->address7, d->segments, reading + 1u);
     d->busy = d->transfer == BQ_OK;
     if (!d->busy) {

@@ -20,11 +20,10 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-/* where in d->code, behind the cells: BAT, TS1.., the coulomb counter, and TS1.. while they show the die */
+/* where in d->fresh and d->code, behind the cells: BAT, TS1.., and in d->fresh the coulomb counter */
 #define X0_BAT 15u
 #define X0_TS 16u
 #define X0_CC 19u
-#define X0_DIE 20u
 
 /* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
  * compiler refuses doubles. Point 0 is the beginning. */
@@ -91,7 +90,7 @@ void x0_invalidate(bq769x0 *d, uint16_t fault);
 
 /* readings.c */
 uint32_t x0_cell_mv(const bq769x0 *d, unsigned input);
-uint8_t x0_quality(bool measured, unsigned bad, bool doubtful);
+uint8_t x0_quality(const bq769x0 *d, bool measured, unsigned bad, bool doubtful);
 void x0_read_cell(const bq769x0 *d, bq_cell_reading *c, unsigned input);
 void x0_read_temp(const bq769x0 *d, bq_temp_reading *t, uint16_t code);
 
@@ -110,6 +109,7 @@ void x0_once(bq769x0 *d, unsigned reg, unsigned n, bool reading);
 void x0_drive(const bq769x0 *d, bq_line line, bool level);
 uint32_t x0_first_ms(const bq769x0 *d);
 void x0_count_charge(bq769x0 *d);
+void x0_look_for_charge(bq769x0 *d);
 void x0_die_reset(bq769x0 *d);
 void x0_die_before_picture(bq769x0 *d);
 void x0_die_after_picture(bq769x0 *d);

@@ -53,8 +53,10 @@ typedef struct bq_afe_ops {
     bq_status (*sample)(void *ctx, bq_sample *sample);
     /** Begins to carry out an action, verified by read-back: balancing outputs; FETs of families that have
      * them; clear_faults where the chip leaves that to the caller (bq76PL536; the bq769x0 driver releases
-     * faults by its own rules). A driver may do less than asked where its own rules forbid it, never more;
-     * bq_action.sleep is not for it. `action` is copied. BQ_OK, BQ_E_BUSY, BQ_E_STATE, BQ_E_ARG (NULL). */
+     * faults by its own rules). A driver may do less than asked where its own rules forbid it, never more; a
+     * path that was asked to conduct and had to stay open ends the job with BQ_E_STATE, while the sample
+     * names the reason. bq_action.sleep is not for it. `action` is copied. BQ_OK, BQ_E_BUSY, BQ_E_STATE,
+     * BQ_E_ARG (NULL). */
     bq_status (*apply)(void *ctx, const bq_action *action);
     /** Begins the self-test of chips and chains. BQ_OK, BQ_E_BUSY, BQ_E_STATE. */
     bq_status (*self_test)(void *ctx);

@@ -36,7 +36,8 @@ int32_t bq769x0_cell_uv(bq769x0_trim trim, uint16_t code);
 uint16_t bq769x0_ov_code(uint8_t trip);
 uint16_t bq769x0_uv_code(uint8_t trip);
 
-/** The datasheet's own procedure (X0-OV-12, X0-UV-12), which may end up to 3.2 mV looser. BQ_OK or
+/** The datasheet's own procedure (X0-OV-12, X0-UV-12), which may end looser than asked: OV by up to 3.2 mV,
+ * UV by up to 6.4 mV. BQ_OK or
  * BQ_E_NO_CODE. */
 bq_status bq769x0_ov_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *trip);
 bq_status bq769x0_uv_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *trip);
@@ -73,10 +74,11 @@ typedef struct bq769x0_current_limits {
 } bq769x0_current_limits;
 
 /**
- * PROTECT1 and PROTECT2 from limits in mV across the shunt (fractions in uV). The range (RSNS) is decided
+ * PROTECT1 and PROTECT2 from limits in uV across the shunt (whole mV count). The range (RSNS) is decided
  * once for both: the coarse one only when a limit exceeds the fine one and both have a code in it (X0-OCD-11,
  * X0-AMB-47). BQ_OK; BQ_E_NO_CODE: a limit or delay below the smallest the chip offers; BQ_E_CONFIG: the
- * achieved OCD threshold is not below the SCD threshold. Nothing is written after an error.
+ * achieved OCD threshold is not below the SCD threshold, also because the two need different ranges (OCD 60
+ * mV with SCD 40 mV: in the fine range OCD is 50 mV). Nothing is written after an error.
  */
 bq_status bq769x0_current_codes(uint32_t ocd_uv, uint16_t ocd_delay_ms, uint32_t scd_uv,
                                 uint16_t scd_delay_us, bq769x0_current_limits *out);

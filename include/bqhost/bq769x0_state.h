@@ -24,6 +24,44 @@ typedef struct bq769x0_frame {
     uint8_t tries, i, x; /* its variables */
 } bq769x0_frame;
 
+/* What is far from the beginning of the instance is reached through a pointer of its own. */
+
+/* The faults that are held. */
+typedef struct bq769x0_trouble {
+    uint32_t held_ms;  /* since when the release condition holds, or when the probation began */
+    uint32_t event_ms; /* when the last fault bit appeared, or when it was released */
+    uint32_t load_ms;
+    uint8_t loads;   /* LOAD_PRESENT = 0 in a row */
+    uint8_t strikes; /* fault events in a row */
+    bool probation;  /* fault bits were cleared and must stay clear for a while */
+    bool locked;     /* too many short circuits */
+    bool again;      /* the present fault came back */
+    bool released;   /* event_ms is the time of a release */
+} bq769x0_trouble;
+
+/* Pictures that do not come, a converter that stands. */
+typedef struct bq769x0_watch {
+    uint32_t good_ms;        /* of the last good picture */
+    uint32_t same_ms, print; /* print of the last picture */
+    uint16_t same;           /* identical pictures in a row */
+    bool fresh_boot;         /* booted by this driver: temperatures come with the first scan */
+} bq769x0_watch;
+
+typedef struct bq769x0_die {
+    uint32_t ms, hold_ms; /* hold_ms: since when temperatures are held */
+    int16_t dc;           /* of the hottest sensor */
+    bool fault;           /* near the end of its range */
+    bool known;           /* dc is a temperature */
+    bool looked;          /* ms is the time of a look at the die */
+    uint8_t phase;
+} bq769x0_die;
+
+typedef struct bq769x0_counting {
+    bq769x0_charge charge;
+    uint32_t ms;  /* windows are counted up to here */
+    int16_t code; /* result counted last */
+} bq769x0_counting;
+
 /* In this order because on ARMv6-M only the first 32 bytes (64 of half-words, 128 of words) are one
  * instruction away, and what lies beyond 256 costs most. Not to be copied or moved once set up. */
 typedef struct bq769x0 {
@@ -57,7 +95,7 @@ typedef struct bq769x0 {
     uint16_t gain2_q15;        /* GAIN2 in units of 1/32768 */
     struct bq769x0_frame *top; /* frame of the job that runs */
     uint32_t now_us, now_ms, rest_us;
-    uint32_t due_us; /* end of a wait, or of the patience with a transfer */
+    uint32_t due_us; /* end of a wait, or when a transfer should have ended */
     uint32_t cc_ms, temp_ms, served_ms;
     uint32_t data_ms; /* from when on the measurement registers count */
     uint32_t scrub_ms;
@@ -70,34 +108,14 @@ typedef struct bq769x0 {
     bq_link_stats stats;
     uint8_t
         bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
-    uint16_t code[23]; /* of 15 inputs, BAT, TS1..TS3, coulomb counter, TS1..TS3 while they show the die */
+    uint16_t fresh[20];      /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
+    uint16_t code[19];       /* of the last good picture: inputs, BAT, TS1..TS3 */
     bq769x0_frame frames[BQ769X0_FRAMES + 1u];
     bq_gpio gpio;
-    /* faults */
-    uint8_t loads;     /* LOAD_PRESENT = 0 in a row */
-    uint8_t strikes;   /* fault events in a row */
-    bool fresh_boot;   /* booted by this driver: temperatures come with the first scan */
-    bool probation;    /* fault bits were cleared and must stay clear for a while */
-    bool locked;       /* too many short circuits */
-    bool again;        /* the present fault came back */
-    bool released;     /* event_ms is the time of a release */
-    uint32_t held_ms;  /* since when the release condition holds, or when the probation began */
-    uint32_t event_ms; /* when the last fault bit appeared, or when it was released */
-    uint32_t load_ms;
-    /* a converter that stands */
-    uint16_t same;           /* identical pictures in a row */
-    uint32_t same_ms, print; /* print of the last picture */
-    /* die */
-    bool die_fault;  /* near the end of its range */
-    bool die_known;  /* die_dc is a temperature */
-    bool die_looked; /* die_ms is the time of a look at the die */
-    uint8_t die_phase;
-    int16_t die_dc;           /* of the hottest sensor */
-    uint32_t die_ms, hold_ms; /* hold_ms: since when temperatures are held */
-    /* charge and calibration */
-    bq769x0_charge charge;
-    int16_t charge_code;                    /* result counted last */
-    uint32_t charge_ms;                     /* ... and when */
+    bq769x0_trouble trouble;
+    bq769x0_watch watch;
+    bq769x0_die die;
+    bq769x0_counting counting;
     uint16_t calibrated_mv[BQ769X0_INPUTS]; /* cells at the last calibration */
 } bq769x0;
 

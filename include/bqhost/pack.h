@@ -158,7 +158,7 @@ typedef struct bq_pack_input {
     bq_pack_test self_test;     /**< of the self-test since the last bring-up */
     bq_status self_test_status; /**< recorded with fault "self_test" */
     bq_status apply_status; /**< of the last attempt to carry out an action; negative for comm_timeout_ms =
-                                 fault "chip" */
+                                 fault "chip", but for BQ_E_STATE: held back by a fault the sample names */
     bool sample_copied;     /**< the sample was copied from the monitor for this step; false = its ages are
                                  those of an earlier step */
     bool balance_off;       /**< the user wants no cell bled */

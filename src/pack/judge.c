@@ -232,7 +232,7 @@ static void judge_input(const bq_pack *p, const bq_pack_input *in, bq_condition 
     c[BQ_FAULT_CONFIG].value = (int32_t)in->monitor_status;
     c[BQ_FAULT_CONTACTOR].broken = in->contactor_mismatch_ms >= BQ_PACK_MISMATCH_MS;
     c[BQ_FAULT_CONTACTOR].value = as_value(in->contactor_mismatch_ms);
-    if (in->apply_status < 0 && !c[BQ_FAULT_CHIP].broken) {
+    if (in->apply_status < 0 && in->apply_status != BQ_E_STATE && !c[BQ_FAULT_CHIP].broken) {
         c[BQ_FAULT_CHIP].broken = true;
         c[BQ_FAULT_CHIP].debounce_ms = p->config.comm_timeout_ms;
         c[BQ_FAULT_CHIP].value = (int32_t)in->apply_status;

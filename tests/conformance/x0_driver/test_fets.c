@@ -94,14 +94,14 @@ static void test_a_fault_at_every_moment_of_switching_on(void)
             up(sim_x0_part_at(k)->name);
             raise_at = n;
             b.hook = raise_before_read_back;
-            TEST_ASSERT_EQUAL(BQ_OK, bench_apply(true, true, 0x5));
+            TEST_ASSERT_EQUAL(BQ_E_VERIFY, bench_apply(true, true, 0x5));
             b.hook = NULL;
             if (raise_at > 0)
                 (void)sim_x0_strike_xready(&b.chip);
             TEST_ASSERT_FALSE(sim_x0_chg(&b.chip) || sim_x0_dsg(&b.chip));
             TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
             TEST_ASSERT_EQUAL_HEX16(BQ_F_MEMORY, b.module.faults);
-            TEST_ASSERT_EQUAL(BQ_OK, bench_apply(true, true, 0x5));
+            TEST_ASSERT_EQUAL(BQ_E_STATE, bench_apply(true, true, 0x5));
             TEST_ASSERT_FALSE(sim_x0_chg(&b.chip) || sim_x0_dsg(&b.chip));
             TEST_ASSERT_EQUAL_HEX16(0, sim_x0_cb(&b.chip));
             NO_MISUSE();

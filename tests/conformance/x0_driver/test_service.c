@@ -10,6 +10,17 @@ void tearDown(void)
 {
 }
 
+/* Held back with a reason that the picture names; or both on, but for a fault that no scan has seen yet. */
+static void applied(bq_status s)
+{
+    if (s == BQ_E_STATE)
+        TEST_ASSERT_TRUE(b.module.faults != 0);
+    else {
+        TEST_ASSERT_EQUAL(BQ_OK, s);
+        TEST_ASSERT_TRUE((b.chip.reg[0] & 0x3f) != 0 || (sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip)));
+    }
+}
+
 /* A host that scans only when ALERT is high, looking at it every 5 ms. */
 static unsigned by_alert(uint32_t ms)
 {
@@ -19,7 +30,7 @@ static unsigned by_alert(uint32_t ms)
         if (bq769x0_alert_pending(&b.d)) {
             TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
             TEST_ASSERT_EQUAL(BQ_OK, bq769x0_begin_apply(&b.d, &b.action));
-            TEST_ASSERT_EQUAL(BQ_OK, bench_run(2000));
+            applied(bench_run(2000));
             scans++;
         }
         bench_wait(5);

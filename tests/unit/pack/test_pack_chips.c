@@ -95,6 +95,15 @@ static void test_actions_that_fail_for_long_are_a_chip_fault(void)
     healthy();
 }
 
+/* BQ_E_STATE: the driver holds a path open for a reason that the sample names; that is judged, not the
+ * status. */
+static void test_a_path_held_back_is_no_chip_fault(void)
+{
+    r.in.apply_status = BQ_E_STATE;
+    rig_run(&r, 3u * config.comm_timeout_ms);
+    healthy();
+}
+
 /* proves: PL-TSD-03 */
 static void test_thermal_shutdown_comes_before_everything_else(void)
 {
@@ -288,6 +297,7 @@ int main(void)
     RUN_TEST(test_soft_chip_flags_act_when_they_last);
     RUN_TEST(test_a_hard_flag_is_not_hidden_by_a_soft_one_below);
     RUN_TEST(test_actions_that_fail_for_long_are_a_chip_fault);
+    RUN_TEST(test_a_path_held_back_is_no_chip_fault);
     RUN_TEST(test_thermal_shutdown_comes_before_everything_else);
     RUN_TEST(test_nothing_a_module_in_supply_lockout_says_counts);
     RUN_TEST(test_a_comparator_that_disagrees_with_the_converter_is_not_a_defect);

@@ -155,7 +155,7 @@ static void test_a_bus_that_fails_during_the_look(void)
             }
             TEST_ASSERT_TRUE(returned);
             TEST_ASSERT_FALSE(rig.d.die_hot ||
-                              rig.d.die_fault); /* no value of a thermistor was taken for the die's */
+                              rig.d.die.fault); /* no value of a thermistor was taken for the die's */
         }
     }
 }

@@ -31,11 +31,12 @@ static void every_mask(const char *part, unsigned cells)
 {
     rig_up(part, cells);
     rig_pass(1000);
-    for (uint32_t asked = 0; asked<1u << cells; asked += cells> 10u ? 7u : 1u) {
+    for (uint32_t asked = 0; asked < 1u << cells; asked += cells > 10u ? 7u : 1u) {
         uint16_t first, second;
+        uint64_t from = rig.chip.now;
         TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(false, false, asked));
         first = commanded();
-        rig_wait_ms(4096);
+        sim_x0_advance(&rig.chip, from + 4096u * 1000000u - rig.chip.now);
         TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(false, false, asked));
         second = commanded();
         TEST_ASSERT_EQUAL_HEX16(0, (first | second) & ~inputs_of(asked));
@@ -112,8 +113,10 @@ static void test_switches_end_with_any_fault(void)
     TEST_ASSERT_EQUAL_HEX16(0x0400, commanded());
     (void)sim_x0_set_cell(&rig.chip, 1, 4.3);
     for (int n = 0; n < 12; n++) {
+        bq_status held;
         rig_pass(250);
-        TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0x0400));
+        held = rig_apply(true, true, 0x0400);
+        TEST_ASSERT_EQUAL_INT(rig_faults() == 0 ? BQ_OK : BQ_E_STATE, held);
     }
     TEST_ASSERT_EQUAL_INT(BQ_F_CELL_OV, rig_faults() & BQ_F_CELL_OV);
     TEST_ASSERT_EQUAL_HEX16(0x0000, commanded());
@@ -126,13 +129,12 @@ static void test_a_fault_between_scan_and_apply_keeps_the_fets_off(void)
     rig_up("bq7694003", 15);
     rig_pass(1000);
     (void)sim_x0_strike_xready(&rig.chip);
-    TEST_ASSERT_EQUAL_INT(BQ_OK,
-                          rig_apply(true, true, 0)); /* the chip refused: no error, but nothing is on */
+    TEST_ASSERT_EQUAL_INT(BQ_E_VERIFY, rig_apply(true, true, 0)); /* the chip refused: nothing is on */
     TEST_ASSERT_FALSE(sim_x0_chg(&rig.chip));
     TEST_ASSERT_FALSE(sim_x0_dsg(&rig.chip));
     rig_pass(250);
     TEST_ASSERT_EQUAL_INT(BQ_F_MEMORY, rig_faults() & BQ_F_MEMORY);
-    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_apply(true, true, 0));
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, rig_apply(true, true, 0));
     TEST_ASSERT_FALSE(sim_x0_dsg(&rig.chip));
     rig_clean();
 }
