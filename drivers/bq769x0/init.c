@@ -30,7 +30,7 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
 {
     bq769x0_current_limits current;
     unsigned groups = config->inputs / 5u;
-    uint8_t protect3;
+    int ov, uv;
     bq_status st;
     if (!wired(config, in_use)) {
         return BQ_E_CELLS;
@@ -38,12 +38,14 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
     if (!in_range(config, groups)) {
         return BQ_E_RANGE;
     }
+    ov = bq769x0_delay_code(BQ769X0_DELAY_OV_S, config->ov_delay_s, &current.ocd_delay_ms); /* overwritten */
+    uv = bq769x0_delay_code(BQ769X0_DELAY_UV_S, config->uv_delay_s, &current.ocd_delay_ms);
+    if ((ov | uv) < 0) { /* one of them is -1 */
+        return BQ_E_NO_CODE;
+    }
     st = bq769x0_current_codes(bq769x0_shunt_uv(config->ocd_ma, config->shunt_uohm), config->ocd_delay_ms,
                                bq769x0_shunt_uv(config->scd_ma, config->shunt_uohm), config->scd_delay_us,
                                &current);
-    if (st == BQ_OK) {
-        st = bq769x0_protect3(config->ov_delay_s, config->uv_delay_s, &protect3);
-    }
     if (st != BQ_OK) {
         return st;
     }
@@ -53,7 +55,7 @@ bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, con
         d->config.die_v25_uv = 1200000u;
     }
     d->achieved.current = current;
-    d->achieved.protect3 = protect3;
+    d->achieved.protect3 = (uint8_t)(uv << 6 | ov << 4);
     d->in_use = in_use;
     d->inputs = config->inputs;
     d->cells = config->cells;

@@ -12,26 +12,27 @@ uint16_t x0_flags(unsigned events)
                       (events & 0x20u) / BQ769X0_STAT_XREADY * BQ_F_MEMORY);
 }
 
-/* Group by group: each must supply the part with 6 to 25 V (X0-ELEC-01). The top input of a group always
- * carries a cell. */
+#define TOPS 0x4210u /* the top input of each group, which always carries a cell */
+
+/* Each group must supply the part with 6 to 25 V (X0-ELEC-01). */
 static void fill_cells(const bq769x0 *d, bq_cell_reading *c, bq_module_reading *m)
 {
-    unsigned in_use = d->in_use, input = 0;
+    uint32_t group_mv = 0;
     bool outside = false;
-    while (in_use != 0u) {
-        uint32_t group_mv = 0;
-        for (unsigned n = 5; n != 0u; n--, input++, in_use >>= 1) {
-            if ((in_use & 1u) != 0u) {
-                x0_read_cell(d, c, input);
-                group_mv += c->mv;
-                if (c->quality == BQ_Q_OPEN_WIRE) {
-                    m->faults |= BQ_F_OPEN_WIRE;
-                }
-                c++;
+    for (unsigned i = 0; i < BQ769X0_INPUTS; i++) {
+        if ((d->in_use >> i & 1u) != 0u) {
+            x0_read_cell(d, c, i);
+            if (c->quality == BQ_Q_OPEN_WIRE) {
+                m->faults |= BQ_F_OPEN_WIRE;
+            }
+            group_mv += c->mv;
+            c++;
+            if ((TOPS >> i & 1u) != 0u) {
+                outside |= group_mv - 6000u > 25000u - 6000u;
+                m->stack_mv += group_mv;
+                group_mv = 0;
             }
         }
-        outside |= group_mv - 6000u > 25000u - 6000u;
-        m->stack_mv += group_mv;
     }
     m->quality = x0_quality(d, d->valid, 0, outside);
 }
