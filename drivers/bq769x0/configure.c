@@ -57,8 +57,8 @@ int x0_job_configure(bq769x0 *d, bq769x0_frame *f)
         return st;
     }
     x0_balance(d, 0);
-    SEQ_TRY(4, x0_set(d, BQ769X0_CELLBAL1, d->groups));
-    SEQ_TRY(5, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+    SEQ_TRY(4, x0_set_switches(d));
+    SEQ_TRY(5, x0_set_ctrl2(d));
     SEQ_TRY(6, x0_set(d, BQ769X0_PROTECT1, 6));
     d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
     SEQ_TRY(7, x0_set(d, BQ769X0_SYS_CTRL1, 2));

@@ -103,7 +103,7 @@ int x0_job_die(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     if (d->die_hot && d->balance != 0u) {
         x0_balance(d, 0);
-        SEQ_TRY(1, x0_set(d, BQ769X0_CELLBAL1, d->groups));
+        SEQ_TRY(1, x0_set_switches(d));
     }
     if (due(d)) {
         d->temp_held = true;

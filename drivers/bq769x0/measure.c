@@ -99,7 +99,7 @@ int x0_job_measure(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     d->faults = 0;
-    SEQ_CALL(1, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+    SEQ_CALL(1, x0_fetch_stat(d));
     if (d->result == BQ_OK) {
         d->stat = d->answer & BQ769X0_STAT_CLEAR;
         if (x0_reached(d, d->data_ms)) {

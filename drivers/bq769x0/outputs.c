@@ -23,7 +23,7 @@ static int job_apply(bq769x0 *d, bq769x0_frame *f)
 {
     uint8_t *ctrl2 = &d->want[BQ769X0_SYS_CTRL2];
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_set(d, BQ769X0_CELLBAL1, d->groups));
+    SEQ_TRY(1, x0_set_switches(d));
     if ((f->reg & ~*ctrl2) != 0) {
         SEQ_TRY(2, x0_fetch(d, BQ769X0_SYS_CTRL1, 8));
         if (!x0_holds(d, BQ769X0_SYS_CTRL1, 8)) {
@@ -33,7 +33,7 @@ static int job_apply(bq769x0 *d, bq769x0_frame *f)
     }
     if ((*ctrl2 & BQ769X0_CTRL2_FETS) != f->reg) {
         *ctrl2 = (uint8_t)((*ctrl2 & BQ769X0_CTRL2_CC_EN) | f->reg);
-        SEQ_TRY(3, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+        SEQ_TRY(3, x0_set_ctrl2(d));
         if ((f->reg & ~d->answer) != 0) {
             *ctrl2 &= d->answer;
             f->n = (uint8_t)-BQ_E_VERIFY;

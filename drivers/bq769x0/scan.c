@@ -138,11 +138,11 @@ static int job_convert(bq769x0 *d, bq769x0_frame *f)
     for (f->tries = 0; f->tries < 3u; f->tries++) {
         f->x = *ctrl2 & BQ769X0_CTRL2_CC_EN;
         *ctrl2 &= (uint8_t)~BQ769X0_CTRL2_CC_EN;
-        SEQ_TRY(1, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+        SEQ_TRY(1, x0_set_ctrl2(d));
         if (f->x != 0u) {
             SEQ_YIELD(2, x0_wait(d, 260000u));
         }
-        SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+        SEQ_TRY(3, x0_fetch_stat(d));
         d->want[0] = d->answer & BQ769X0_STAT_CC_READY;
         if (d->want[0] != 0u) {
             SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
@@ -152,7 +152,7 @@ static int job_convert(bq769x0 *d, bq769x0_frame *f)
         *ctrl2 &= (uint8_t)~BQ769X0_CTRL2_CC_ONESHOT;
         for (f->i = 0; f->i < 4u; f->i++) { /* 260, 375, 490, 605 ms */
             SEQ_YIELD(6, x0_wait(d, f->i == 0u ? 260000u : 115000u));
-            SEQ_TRY(7, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+            SEQ_TRY(7, x0_fetch_stat(d));
             if ((d->answer & BQ769X0_STAT_CC_READY) != 0u) {
                 SEQ_TRY(8, x0_fetch(d, BQ769X0_CC_HI, 2));
                 x0_take_current(d, (uint16_t)((unsigned)d->answer << 8 | x0_data(d)[1]));
@@ -175,7 +175,7 @@ int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
     SEQ_CALL(1, x0_run(d, job_convert));
     f->x = (uint8_t)-d->result;
     d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
-    SEQ_TRY(2, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+    SEQ_TRY(2, x0_set_ctrl2(d));
     d->cc_ms = d->counting.ms = d->now_ms;
     return -(int)f->x;
     SEQ_END;

@@ -126,7 +126,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     if ((d->stat & BQ769X0_STAT_FAULTS & (t->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
         /* the register byte of a read carries no CRC (X0-I2C-16): a new bit counts when it is read twice */
-        SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+        SEQ_TRY(1, x0_fetch_stat(d));
         d->stat &= d->answer;
     }
     f->i = d->stat & BQ769X0_STAT_FAULTS;
@@ -188,9 +188,9 @@ int x0_job_off(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     d->want[BQ769X0_SYS_CTRL2] &= (uint8_t)(x0_allowed(x0_events(d)) | ~BQ769X0_CTRL2_FETS);
-    SEQ_CALL(1, x0_set(d, BQ769X0_SYS_CTRL2, 1));
+    SEQ_CALL(1, x0_set_ctrl2(d));
     f->x = d->result != BQ_OK;
-    SEQ_TRY(2, x0_set(d, BQ769X0_CELLBAL1, d->groups));
+    SEQ_TRY(2, x0_set_switches(d));
     return f->x == 0u ? BQ_OK : BQ_E_VERIFY;
     SEQ_END;
 }

@@ -178,7 +178,7 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
     SEQ_TRY(2, x0_run(d, x0_job_configure));
     d->state = X0_STATE_NONE; /* not before the first picture */
     d->counting.ms = d->now_ms;
-    SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+    SEQ_TRY(3, x0_fetch_stat(d));
     d->want[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
     if (d->want[0] != 0u) {
         SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));

@@ -35,7 +35,7 @@ int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
         if (f->n < X0_READING) {
             x0_bump(&d->stats.write_errors);
             if (f->reg == BQ769X0_SYS_STAT) {
-                SEQ_TRY(3, x0_fetch(d, BQ769X0_SYS_STAT, 1));
+                SEQ_TRY(3, x0_fetch_stat(d));
                 d->want[0] &= d->answer;
             }
         }
@@ -96,4 +96,19 @@ int x0_job_set(bq769x0 *d, bq769x0_frame *f)
 void x0_set(bq769x0 *d, unsigned reg, unsigned n)
 {
     (void)x0_push(d, x0_job_set, reg, n);
+}
+
+void x0_fetch_stat(bq769x0 *d)
+{
+    x0_fetch(d, BQ769X0_SYS_STAT, 1);
+}
+
+void x0_set_ctrl2(bq769x0 *d)
+{
+    x0_set(d, BQ769X0_SYS_CTRL2, 1);
+}
+
+void x0_set_switches(bq769x0 *d)
+{
+    x0_set(d, BQ769X0_CELLBAL1, d->groups);
 }

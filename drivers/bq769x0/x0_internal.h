@@ -68,6 +68,9 @@ bq_status x0_judge(bq769x0 *d, const bq769x0_frame *f);
 void x0_fetch(bq769x0 *d, unsigned reg, unsigned n);
 void x0_put(bq769x0 *d, unsigned reg, unsigned n);
 void x0_set(bq769x0 *d, unsigned reg, unsigned n); /* written, read back, compared */
+void x0_fetch_stat(bq769x0 *d);
+void x0_set_ctrl2(bq769x0 *d);
+void x0_set_switches(bq769x0 *d);
 bool x0_holds(bq769x0 *d, unsigned reg, unsigned n);
 void x0_recover(bq769x0 *d);
 int x0_job_transfer(bq769x0 *d, bq769x0_frame *f);
