@@ -93,6 +93,37 @@ static void test_every_threshold(void)
         }
 }
 
+/* What was programmed trips where the part's tolerance says it must, and never below where it may: 10 % and
+ * 2.5 mV to each side of the nominal threshold. */
+/* proves: X0-OCD-05, X0-SCD-04 */
+static void test_the_window_of_every_threshold(void)
+{
+    int range, i;
+    for (range = 0; range < 2; range++) {
+        for (i = 0; i < 16; i++) {
+            double t = rows_ocd_mv[range][i];
+            if (range == 1 && t <= 50)
+                continue; /* the fine range has these */
+            asked((unsigned)t, range == 0 ? 100 : 200, 8, 70);
+            up();
+            TEST_ASSERT_EQUAL((unsigned)t, ocd_now());
+            TEST_ASSERT_FALSE(trips(0.9 * t - 2.5, 2000, 0x01));
+            TEST_ASSERT_TRUE(trips(1.1 * t + 2.5, 12, 0x01));
+        }
+        for (i = 0; i < 8; i++) {
+            double t = rows_scd_mv[range][i];
+            if (range == 1 && t <= 100)
+                continue;
+            asked(range == 0 ? 8 : 56, (unsigned)t, 1280, 70);
+            up();
+            TEST_ASSERT_EQUAL((unsigned)t, scd_now());
+            TEST_ASSERT_FALSE(trips(0.9 * t - 2.5, 1, 0x02));
+            TEST_ASSERT_TRUE(trips(1.1 * t + 2.5, 0.2, 0x02));
+        }
+    }
+    NO_MISUSE();
+}
+
 /* proves: X0-OCD-04, X0-SCD-02, X0-AMB-48, X0-AMB-44, X0-TIM-13 */
 static void test_every_delay(void)
 {
@@ -215,6 +246,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_threshold);
+    RUN_TEST(test_the_window_of_every_threshold);
     RUN_TEST(test_every_delay);
     RUN_TEST(test_every_voltage_delay);
     RUN_TEST(test_voltage_limits_over_the_range_and_the_trims);

@@ -33,7 +33,7 @@ static void test_the_worked_examples(void)
     TEST_ASSERT_EQUAL_HEX16(0x1f10, rig_read16(0x0c));
 }
 
-/* proves: X0-NUM-103, X0-NUM-104, X0-NUM-105, X0-NUM-106, X0-ADC-07, X0-ADC-08 */
+/* proves: X0-NUM-103, X0-NUM-104, X0-NUM-105, X0-NUM-106, X0-ADC-07, X0-ADC-08, X0-ADC-09 */
 static void test_ideal_codes(void)
 {
     static const struct {
