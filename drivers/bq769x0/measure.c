@@ -86,6 +86,7 @@ int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
         if (d->valid) {
             break;
         }
+        SEQ_YIELD(3, x0_wait(d, 0)); /* work enough for one poll */
     }
     if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
         x0_take_current(d, d->fresh[X0_CC]);
