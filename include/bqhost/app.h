@@ -77,6 +77,7 @@ typedef enum bq_app_job {
 typedef struct bq_app {
     /* private; small members first: only what lies near the beginning is one instruction away on a Cortex-M0
      */
+    bq_pack_input input;
     bool pausing; /* retry_ms is the begin of a pause */
     bool copied;  /* the picture for the next step was copied: the step is due */
     bool scan_due, scan_ended, apply_due, step_now;
@@ -96,7 +97,6 @@ typedef struct bq_app {
     bq_clock clock;
     bq_gpio gpio;
     bq_ammeter ammeter;
-    bq_pack_input input;
     bq_action action, applied;
     bq_app_counters counters;
     bq_sample sample;

@@ -46,8 +46,9 @@ typedef struct bq_console_target {
 typedef struct bq_console {
     /* private */
     bq_stream stream;
-    uint16_t row;  /* next row of the running command */
-    uint16_t item; /* and where in its list it stands */
+    uint32_t now_ms, since_ms; /* time of the loop, and since its last pack step */
+    uint16_t row;              /* next row of the running command */
+    uint16_t item;             /* and where in its list it stands */
     uint8_t out_len, out_sent;
     uint8_t len, cursor;
     uint8_t recalled; /* 0 = the line itself, n = history[n] */

@@ -59,11 +59,11 @@ typedef struct bq_board {
 
 /** One firmware. Caller-owned; read it with the functions of app.h through bq_firmware_app(). */
 typedef struct bq_firmware {
-    /* private */
-    uint32_t last_us, rest_us, now_ms; /* the clock, extended */
-    uint32_t step_ms, fed_ms, high_ms, reset_ms, safe_ms;
+    /* private; small members first, as in bq_app */
     bq_pack_request request; /* of bq_firmware_request() */
     bool high, resetting, busy, safe_running, safe_done;
+    uint32_t last_us, rest_us, now_ms; /* the clock, extended */
+    uint32_t step_ms, fed_ms, high_ms, reset_ms, safe_ms;
     bq_telemetry_source source;
     bq_console_target target;
     bq_board board;

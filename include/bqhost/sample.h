@@ -94,11 +94,11 @@ typedef struct bq_sample {
 
 /** What the pack controller wants done until its next step. */
 typedef struct bq_action {
-    uint32_t balance[BQ_MASK_WORDS]; /**< bit (n-1) % 32 of word (n-1) / 32 = bleed cell n */
-    bool charge_on;                  /**< charging path may conduct */
-    bool discharge_on;               /**< discharging path may conduct */
+    bool charge_on;    /**< charging path may conduct */
+    bool discharge_on; /**< discharging path may conduct */
     bool clear_faults; /**< chip faults seen in the sample have been acted on and may be cleared */
     bool sleep;        /**< put the monitors to sleep (bq_afe_ops.sleep; apply does not look at it) */
+    uint32_t balance[BQ_MASK_WORDS]; /**< bit (n-1) % 32 of word (n-1) / 32 = bleed cell n */
 } bq_action;
 
 static inline bool bq_mask_get(const uint32_t *mask, uint16_t cell)

@@ -82,13 +82,13 @@ typedef struct bq_telemetry {
     uint32_t busy;    /**< attempts that found no room or bus-off */
     uint32_t refused; /**< frames the controller called wrong; they are dropped */
     /* private */
-    bq_can can;
-    uint32_t period_ms, boot_ms; /* when they were due last */
-    uint32_t sequence, events;
-    uint16_t due; /* bit n = bq_telemetry_id n */
-    uint16_t index;
+    uint32_t due; /* bit n = bq_telemetry_id n */
     uint8_t running;
     bool started, have_sample;
+    uint32_t index;
+    uint32_t period_ms, boot_ms; /* when they were due last */
+    uint32_t sequence, events;
+    bq_can can;
 } bq_telemetry;
 
 /** Everything of the first period is due. `can->ops` NULL, or `can` NULL: no controller, nothing is ever

@@ -133,13 +133,16 @@ bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *af
 static void advance_time(bq_app *app)
 {
     const uint32_t now_us = app->clock.now_us(app->clock.ctx);
-    const uint32_t passed = now_us - app->last_us;
+    const uint32_t passed_us = now_us - app->last_us;
+    uint32_t passed_ms = passed_us / 1000u;
 
     app->last_us = now_us;
-    app->now_ms += passed / 1000u;
-    app->rest_us += passed % 1000u;
-    app->now_ms += app->rest_us / 1000u;
-    app->rest_us %= 1000u;
+    app->rest_us += passed_us - passed_ms * 1000u;
+    if (app->rest_us >= 1000u) {
+        app->rest_us -= 1000u;
+        passed_ms++;
+    }
+    app->now_ms += passed_ms;
 }
 
 /* Periods begin at multiples of the period; those that passed unused count as overruns. */

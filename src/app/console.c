@@ -77,6 +77,10 @@ static uint32_t run(bq_console *c, bq_console_target *t)
         finish(c);
         return 0;
     }
+    if (t->app != NULL) {
+        c->now_ms = bq_app_now_ms(t->app);
+        c->since_ms = bq_app_step_age_ms(t->app);
+    }
     made = console_run(c, t);
     if (made == CONSOLE_ROW) {
         console_end(c);

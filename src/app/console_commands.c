@@ -3,10 +3,9 @@
 #include "console_internal.h"
 #include <string.h>
 
-/* In the order of `names`. */
+/* In the order of `commands`; 0 = none. */
 enum {
-    NOTHING,
-    HELP,
+    HELP = 1,
     VERSION,
     STATUS,
     CELLS,
@@ -20,33 +19,52 @@ enum {
     UNKNOWN
 };
 
-static const char names[] =
-    "|help|version|status|cells|faults|counters|self-test|balance|balance on|balance off|reset";
+/* Each with its row of help. */
+static const char commands[] = "help: this list|"
+                               "version: last reset, crash|"
+                               "status: state, reason, measurements|"
+                               "cells: every cell and sensor|"
+                               "faults: every one since the start|"
+                               "counters: of loop and link|"
+                               "self-test: of the monitors, outputs off|"
+                               "balance: which cells bleed|"
+                               "balance on: allow it|"
+                               "balance off: forbid it|"
+                               "reset: outputs off, then restart";
 
 /* ---- taking the line apart ------------------------------------------------------------------------ */
 
 /* One blank between words, none around them. */
-static uint8_t tidy(char *line)
+static void tidy(char *line)
 {
-    uint8_t len = 0;
+    char *to = line;
 
     for (const char *from = line; *from != '\0'; from++) {
-        if (*from != ' ' || (len > 0u && line[len - 1u] != ' ')) {
-            line[len++] = *from;
+        if (*from != ' ' || (from[1] != ' ' && from[1] != '\0' && to != line)) {
+            *to++ = *from;
         }
     }
-    return len > 0u && line[len - 1u] == ' ' ? (uint8_t)(len - 1u) : len;
+    *to = '\0';
+}
+
+/* Whether `line` is what stands before the colon. */
+static bool is(const char *line, const char *command)
+{
+    while (*line != '\0' && *line == *command) {
+        line++;
+        command++;
+    }
+    return *line == '\0' && *command == ':';
 }
 
 uint8_t console_parse(bq_console *c)
 {
-    const uint8_t len = tidy(c->line);
-    uint8_t n = NOTHING, word_len = 0;
+    uint8_t n = 0;
 
-    while (n < (uint8_t)UNKNOWN) {
-        const char *word = console_word(names, n, &word_len);
-        if (word == NULL || (word_len == len && memcmp(word, c->line, len) == 0)) {
-            break;
+    tidy(c->line);
+    if (c->line[0] != '\0') {
+        while (n < (uint8_t)UNKNOWN - 1u && !is(c->line, console_word(commands, n))) {
+            n++;
         }
         n++;
     }
@@ -67,21 +85,14 @@ static console_row only(bq_console *c, const char *what)
 
 static console_row help(bq_console *c)
 {
-    static const char text[] = "%[help       this list|"
-                               "version    version, last reset, crash|"
-                               "status     state, reason, measurements|"
-                               "cells      every cell and sensor|"
-                               "faults     every fault since the start|"
-                               "counters   of loop and link|"
-                               "self-test  of the monitors, while outputs are off|"
-                               "balance    (on, off) allow or forbid it; which cells bleed|"
-                               "reset      outputs off, then restart]";
-    const int32_t row = c->row++;
+    const char *row = console_word(commands, c->row++);
 
-    if (row >= 9) {
+    if (row == NULL) {
         return CONSOLE_DONE;
     }
-    console_say(c, text, &row);
+    while (*row != '|' && *row != '\0') {
+        console_char(c, *row++);
+    }
     return CONSOLE_ROW;
 }
 

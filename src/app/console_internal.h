@@ -12,17 +12,18 @@ void console_text(bq_console *c, const char *what);
 /*
  * Text with values, taken from `v` in turn:
  *   %u number        %x 4 hexadecimal digits   %X 8                %v millivolts: 3.700 V
- *   %i milliamperes  %c 25.1 C                 %p permille: 53.2 % %t milliseconds: 12.3 s
- *   %a , 12 ms old (-1: , never measured)      %E bq_status        %S bq_pack_state_id
- *   %F bq_pack_fault %H bq_pack_hold
+ *   %i milliamperes  %c 25.1 C                 %t milliseconds: 12.3 s
+ *   %p permille: 53.2 % (below 0: not valid)   %T since a time: 12.3 s
+ *   %a an age when the picture was made: , 12 ms old (above INT32_MAX: , never measured)
+ *   %E bq_status     %S bq_pack_state_id       %F bq_pack_fault    %H bq_pack_hold
  *   %[off|on]   the value chooses one of the words
  *   %(, cell )  the text and the number, nothing when it is 0
  *   %?          0: "not valid", and the rest is left out
  */
 void console_say(bq_console *c, const char *format, const int32_t *v);
 void console_end(bq_console *c); /* CR LF; the row is complete */
-/* The words of a list "a|b|c": where number n begins, NULL past the end; `len` gets its length. */
-const char *console_word(const char *list, uint32_t n, uint8_t *len);
+/* The words of a list "a|b|c": where number n begins, NULL past the end. */
+const char *console_word(const char *list, uint32_t n);
 
 /* ---- console_edit.c: the line --------------------------------------------------------------------- */
 
@@ -52,8 +53,5 @@ console_row console_cells(bq_console *c, const bq_app *app);
 console_row console_faults(bq_console *c, const bq_app *app);
 console_row console_counters(bq_console *c, const bq_app *app);
 console_row console_bleeding(bq_console *c, const bq_app *app);
-
-/* Saturating: an age measured `since_ms` ago. */
-int32_t console_age(uint32_t age_ms, uint32_t since_ms);
 
 #endif

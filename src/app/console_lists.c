@@ -11,16 +11,16 @@
 /* Age of the module's picture, and why a value is not valid (bits of all bad ones; 0 = all are valid). */
 static void tail(bq_console *c, const bq_app *app, uint8_t module, uint8_t bad)
 {
-    const uint8_t bits[] = {BQ_Q_COMM, BQ_Q_OPEN_WIRE, BQ_Q_SENSOR, BQ_Q_RANGE};
-    int32_t v[2] = {console_age(bq_app_sample(app)->modules[module].age_ms, bq_app_step_age_ms(app)), 0};
+    static const uint8_t bits[] = {BQ_Q_COMM, BQ_Q_OPEN_WIRE, BQ_Q_SENSOR, BQ_Q_RANGE};
+    int32_t v = (int32_t)bq_app_sample(app)->modules[module].age_ms;
 
-    console_say(c, "%a", v);
-    while (v[1] < 4 && (bad & bits[v[1]]) == 0u) {
-        v[1]++;
+    console_say(c, "%a", &v);
+    if (bad == 0u) {
+        return;
     }
-    if (bad != 0u) {
-        console_say(c, ", ? is not valid: %[no answer|open wire|sensor|range|chip]", &v[1]);
+    for (v = 0; v < 4 && (bad & bits[v]) == 0u; v++) {
     }
+    console_say(c, ", ? is not valid: %[no answer|open wire|sensor|range|chip]", &v);
 }
 
 /* What is to be said about a value that is not valid; 0 for a valid one. */
@@ -104,25 +104,24 @@ console_row console_bleeding(bq_console *c, const bq_app *app)
 
 /* ---- faults -------------------------------------------------------------------------------------- */
 
+#define BIT(fault) ((uint32_t)1 << (fault))
+
 /* Unit of what a record holds. */
 static const char *unit(bq_pack_fault f, int32_t value)
 {
-    switch (f) {
-    case BQ_FAULT_CELL_OV:
-    case BQ_FAULT_CELL_UV:
-    case BQ_FAULT_IMBALANCE:
+    const uint32_t bit = BIT(f);
+
+    if ((bit & (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CELL_UV) | BIT(BQ_FAULT_IMBALANCE))) != 0u) {
         return ", %v";
-    case BQ_FAULT_OVERTEMP:
-    case BQ_FAULT_UNDERTEMP:
-        return ", %c";
-    case BQ_FAULT_COMM_LOSS:
-    case BQ_FAULT_NO_READING:
-    case BQ_FAULT_SENSOR:
-    case BQ_FAULT_CONTACTOR:
-        return ", %u ms";
-    default:
-        return value < 0 ? ", %E" : ", flags %x";
     }
+    if ((bit & (BIT(BQ_FAULT_OVERTEMP) | BIT(BQ_FAULT_UNDERTEMP))) != 0u) {
+        return ", %c";
+    }
+    if ((bit & (BIT(BQ_FAULT_COMM_LOSS) | BIT(BQ_FAULT_NO_READING) | BIT(BQ_FAULT_SENSOR) |
+                BIT(BQ_FAULT_CONTACTOR))) != 0u) {
+        return ", %u ms";
+    }
+    return value < 0 ? ", %E" : ", flags %x";
 }
 
 static void fault_row(bq_console *c, bq_pack_fault f, const bq_pack_fault_record *r)

@@ -2,12 +2,38 @@
 /* The commands status and version: one row for each subject. */
 #include "bqhost/version.h"
 #include "console_internal.h"
+#include "settings_internal.h"
 #include <string.h>
 
 #define MOST_VALUES 5u
 
+#define U(member) BQ_FIELD(bq_app, member, BQ_FIELD_UNSIGNED)
+#define S(member) BQ_FIELD(bq_app, member, BQ_FIELD_SIGNED)
+
+/* What the rows show, one row after the other. The last ones are there to be read beyond the last row. */
+/* clang-format off */
+static const bq_field fields[] = {
+    /*  0 state     */ U(pack.state), U(pack.state_ms),
+    /*  2 outputs   */ U(action.charge_on), U(action.discharge_on), U(line_on),
+    /*  5 request   */ U(input.request),
+    /*  6 pack      */ U(pack.summary.pack_mv), U(pack.summary.complete), U(pack.summary.blind_ms),
+    /*  9 cells     */ U(pack.summary.cell_min), U(pack.summary.cell_min_mv), U(pack.summary.cell_min),
+                       U(pack.summary.cell_max_mv), U(pack.summary.cell_max),
+    /* 14 sensors   */ U(pack.summary.temp_min), S(pack.summary.temp_min_dc), U(pack.summary.temp_min),
+                       S(pack.summary.temp_max_dc), U(pack.summary.temp_max),
+    /* 19 current   */ U(sample.current_valid), S(sample.current_ma), U(sample.current_age_ms),
+    /* 22 charge    */ S(pack.summary.soc_permille),
+    /* 23 balance   */ U(input.balance_off), U(pack.summary.balancing),
+    /* 25 monitor   */ U(input.monitor), U(input.monitor) /* modules */, S(input.monitor_status),
+    /* 28 self-test */ U(input.self_test), S(input.self_test_status),
+                       U(now_ms), U(now_ms), U(now_ms)};
+/* clang-format on */
+
+/* Where in `fields` a row begins. */
+static const uint8_t first[] = {0, 2, 5, 5, 6, 9, 14, 19, 22, 23, 25, 28};
+
 static const char *const formats[] = {
-    "state     %S for %t",
+    "state     %S for %T",
     "outputs   charge %[off|on], discharge %[off|on], contactor %[off|on]",
     "request   %[off|on|sleep]",
     "cause     %F, held by %H",
@@ -15,7 +41,7 @@ static const char *const formats[] = {
     "cells     %?%v (%u) to %v (%u)",
     "sensors   %?%c (%u) to %c (%u)",
     "current   %?%i%a",
-    "charge    %?%p",
+    "charge    %p",
     "balance   %[allowed|forbidden], cells %u",
     "monitor   %[down|up|failed], modules %u, %E",
     "self-test %[not done|passed|failed], %E",
@@ -23,87 +49,28 @@ static const char *const formats[] = {
     "uptime    %t",
 };
 
-#define ROWS_OF_APP 12u
-#define ROWS (sizeof formats / sizeof formats[0])
+enum { ROW_CAUSE = 3, ROW_PACK = 4, ROW_MONITOR = 10, ROW_CAN = 12, ROWS = 14 };
 
-static const char *cause(const bq_pack *p, int32_t *v)
-{
-    const bq_pack_fault f = bq_pack_cause(p);
-
-    if (f == BQ_FAULT_COUNT) {
-        return "cause     none";
-    }
-    v[0] = (int32_t)f;
-    v[1] = (int32_t)p->fault[f].hold;
-    return formats[3];
-}
-
-static void extremes(int32_t *v, int32_t least, unsigned at_least, int32_t most, unsigned at_most)
-{
-    v[0] = (int32_t)at_least;
-    v[1] = least;
-    v[2] = (int32_t)at_least;
-    v[3] = most;
-    v[4] = (int32_t)at_most;
-}
-
-/* The values of one row; returns its format. */
-static const char *look(const bq_app *app, uint16_t row, int32_t *v)
+/* The values of one row, and what follows them in `fields`; returns its format. */
+static const char *look(const bq_app *app, unsigned row, int32_t *v)
 {
     const bq_pack *p = bq_app_pack(app);
-    const bq_pack_summary *y = &p->summary;
-    const bq_pack_input *in = bq_app_input(app);
-    const bq_sample *s = bq_app_sample(app);
-    const uint32_t since = bq_app_step_age_ms(app);
 
-    switch (row) {
-    case 0:
-        v[0] = (int32_t)p->state;
-        v[1] = (int32_t)(bq_app_now_ms(app) - p->state_ms);
-        break;
-    case 1:
-        v[0] = bq_app_action(app)->charge_on;
-        v[1] = bq_app_action(app)->discharge_on;
-        v[2] = bq_app_outputs_on(app);
-        break;
-    case 2:
-        v[0] = (int32_t)in->request;
-        break;
-    case 3:
-        return cause(p, v);
-    case 4:
-        v[0] = (int32_t)y->pack_mv;
-        v[1] = y->complete;
-        v[2] = console_age(s->cell_count == 0u ? UINT32_MAX : y->blind_ms, since);
-        break;
-    case 5:
-        extremes(v, y->cell_min_mv, y->cell_min, y->cell_max_mv, y->cell_max);
-        break;
-    case 6:
-        extremes(v, y->temp_min_dc, y->temp_min, y->temp_max_dc, y->temp_max);
-        break;
-    case 7:
-        v[0] = s->current_valid;
-        v[1] = s->current_ma;
-        v[2] = console_age(s->current_age_ms, since);
-        break;
-    case 8:
-        v[0] = y->soc_permille >= 0;
-        v[1] = y->soc_permille;
-        break;
-    case 9:
-        v[0] = in->balance_off;
-        v[1] = y->balancing;
-        break;
-    case 10:
-        v[0] = (int32_t)in->monitor;
+    for (unsigned i = 0; i < MOST_VALUES; i++) {
+        const bq_field *f = &fields[first[row] + i];
+        v[i] = (int32_t)settings_load_field(f, (const unsigned char *)app + f->offset);
+    }
+    if (row == ROW_CAUSE) {
+        const bq_pack_fault f = bq_pack_cause(p);
+        if (f == BQ_FAULT_COUNT) {
+            return "cause     none";
+        }
+        v[0] = (int32_t)f;
+        v[1] = (int32_t)p->fault[f].hold;
+    } else if (row == ROW_PACK && bq_app_sample(app)->cell_count == 0u) {
+        v[2] = -1;
+    } else if (row == ROW_MONITOR) {
         v[1] = bq_app_modules_found(app);
-        v[2] = (int32_t)in->monitor_status;
-        break;
-    default:
-        v[0] = (int32_t)in->self_test;
-        v[1] = (int32_t)in->self_test_status;
-        break;
     }
     return formats[row];
 }
@@ -119,22 +86,22 @@ static void refused(bq_console *c, const bq_console_target *t)
 
 console_row console_status(bq_console *c, const bq_console_target *t)
 {
-    const uint16_t row = c->row++;
+    const unsigned row = c->row++;
     int32_t v[MOST_VALUES];
 
     if (row >= ROWS) {
         return CONSOLE_DONE;
     }
-    if (row >= ROWS_OF_APP) {
+    if (row >= ROW_CAN) {
         v[0] = (int32_t)t->now_ms;
-        if (row == ROWS_OF_APP) {
+        if (row == ROW_CAN) {
             v[0] = t->can != NULL && t->can->ops != NULL ? (int32_t)t->can->ops->state(t->can->ctx) : 3;
         }
         console_say(c, formats[row], v);
     } else if (t->app != NULL) {
         console_say(c, look(t->app, row, v), v);
     } else {
-        c->row = ROWS_OF_APP;
+        c->row = ROW_CAN;
         refused(c, t);
     }
     return CONSOLE_ROW;

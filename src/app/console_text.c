@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define END_OF_ROW 2u
+#define NOT_VALID "not valid"
 
 void console_char(bq_console *c, char what)
 {
@@ -23,14 +24,6 @@ void console_end(bq_console *c)
 {
     c->out[c->out_len++] = '\r';
     c->out[c->out_len++] = '\n';
-}
-
-int32_t console_age(uint32_t age_ms, uint32_t since_ms)
-{
-    if (age_ms > INT32_MAX || since_ms > INT32_MAX - age_ms) {
-        return -1;
-    }
-    return (int32_t)(age_ms + since_ms);
 }
 
 /* With a point before the last `decimals` digits. */
@@ -68,41 +61,41 @@ static void hex(bq_console *c, uint32_t value, unsigned n)
     }
 }
 
-static void age(bq_console *c, int32_t ms)
+/* An age when the picture was made; it has grown since. */
+static void age(bq_console *c, uint32_t ms)
 {
-    if (ms < 0) {
+    if (ms > INT32_MAX - c->since_ms) {
         console_text(c, ", never measured");
         return;
     }
     console_text(c, ", ");
-    quantity(c, ms, 0, " ms old");
+    digits(c, ms + c->since_ms, 0);
+    console_text(c, " ms old");
 }
 
-const char *console_word(const char *list, uint32_t n, uint8_t *len)
+static bool ends(char what)
 {
-    const char *end = list;
+    return what == '|' || what == ']' || what == '\0';
+}
 
-    for (;;) {
-        while (*end != '|' && *end != '\0' && *end != ']') {
-            end++;
+const char *console_word(const char *list, uint32_t n)
+{
+    for (; n > 0u; n--) {
+        while (!ends(*list)) {
+            list++;
         }
-        if (n-- == 0u) {
-            *len = (uint8_t)(end - list);
-            return list;
-        }
-        if (*end != '|') {
+        if (*list++ != '|') {
             return NULL;
         }
-        list = ++end;
     }
+    return list;
 }
 
-static void choose(bq_console *c, const char *list, int32_t n)
+static void choose(bq_console *c, const char *list, uint32_t n)
 {
-    uint8_t len = 0;
-    const char *word = console_word(list, (uint32_t)n, &len);
+    const char *word = console_word(list, n);
 
-    while (word != NULL && len-- > 0u) {
+    while (word != NULL && !ends(*word)) {
         console_char(c, *word++);
     }
 }
@@ -129,14 +122,21 @@ static void one(bq_console *c, char code, int32_t value)
         quantity(c, value, 1, " C");
         break;
     case 'p':
-        quantity(c, value, 1, " %");
+        if (value < 0) {
+            console_text(c, NOT_VALID);
+        } else {
+            quantity(c, value, 1, " %");
+        }
         break;
+    case 'T':
+        value = (int32_t)(c->now_ms - (uint32_t)value);
+        /* fall through */
     case 't':
         digits(c, (uint32_t)value / 100u, 1);
         console_text(c, " s");
         break;
     case 'a':
-        age(c, value);
+        age(c, (uint32_t)value);
         break;
     case 'E':
         console_text(c, bq_status_name((bq_status)value));
@@ -175,7 +175,7 @@ void console_say(bq_console *c, const char *format, const int32_t *v)
         }
         format += 2;
         if (code == '[') {
-            choose(c, format, *v);
+            choose(c, format, (uint32_t)*v);
             format = until(c, format, ']', false);
         } else if (code == '(') {
             format = until(c, format, ')', *v != 0);
@@ -185,7 +185,7 @@ void console_say(bq_console *c, const char *format, const int32_t *v)
         } else if (code != '?') {
             one(c, code, *v);
         } else if (*v == 0) {
-            format = "not valid";
+            format = NOT_VALID;
         }
         v++;
     }

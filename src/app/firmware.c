@@ -93,11 +93,13 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 static void advance_time(bq_firmware *fw)
 {
     const uint32_t now_us = fw->board.clock.now_us(fw->board.clock.ctx);
+    uint32_t passed_ms;
 
     fw->rest_us += now_us - fw->last_us;
     fw->last_us = now_us;
-    fw->now_ms += fw->rest_us / 1000u;
-    fw->rest_us %= 1000u;
+    passed_ms = fw->rest_us / 1000u;
+    fw->rest_us -= passed_ms * 1000u;
+    fw->now_ms += passed_ms;
     fw->target.now_ms = fw->now_ms;
     fw->source.now_ms = fw->now_ms;
 }

@@ -22,13 +22,14 @@ settings_walk settings_begin(const bq_settings *s)
     return w;
 }
 
-const bq_field *settings_next(settings_walk *w, unsigned char **object)
+const bq_field *settings_next(settings_walk *w, unsigned char **at)
 {
     while (w->part < w->s->count) {
         const bq_settings_part *p = &w->s->parts[w->part];
         if (w->field < p->table->count && w->element < p->count) {
-            *object = (unsigned char *)p->object + (size_t)w->element * p->table->stride;
-            return &p->table->fields[w->field++];
+            const bq_field *f = &p->table->fields[w->field++];
+            *at = (unsigned char *)p->object + (size_t)w->element * p->table->stride + f->offset;
+            return f;
         }
         w->field = 0;
         w->element++;
@@ -40,54 +41,47 @@ const bq_field *settings_next(settings_walk *w, unsigned char **object)
     return NULL;
 }
 
-uint32_t settings_load_field(const bq_field *f, const unsigned char *object)
+uint32_t settings_load_field(const bq_field *f, const unsigned char *at)
 {
-    const unsigned char *at = object + f->offset;
-    uint32_t u32 = *at;
-    uint16_t u16;
+    const unsigned unused = 32u - 8u * f->size; /* bits */
+    uint32_t value = *at;
+    uint16_t half;
 
-    if (f->size == 2u) {
-        memcpy(&u16, at, sizeof u16);
-        u32 = u16;
-    } else if (f->size == 4u) {
-        memcpy(&u32, at, sizeof u32);
+    if (f->size == 4u) {
+        memcpy(&value, at, sizeof value);
+    } else if (f->size == 2u) {
+        memcpy(&half, at, sizeof half);
+        value = half;
     }
-    if (f->kind == (uint8_t)BQ_FIELD_SIGNED && f->size < 4u) {
-        const uint32_t sign = (uint32_t)1 << (8u * f->size - 1u);
-        u32 = (u32 ^ sign) - sign;
+    if (f->kind == (uint8_t)BQ_FIELD_SIGNED) {
+        const uint32_t sign = 0x80000000u >> unused;
+        value = (value ^ sign) - sign;
     }
-    return u32;
+    return value;
 }
 
-bool settings_field_fits(const bq_field *f, uint32_t value)
+void settings_store_field(const bq_field *f, unsigned char *at, uint32_t value)
 {
-    const uint32_t half = (uint32_t)1 << (8u * f->size - 1u);
-
-    switch (f->kind) {
-    case BQ_FIELD_BOOL:
-        return value <= 1u;
-    case BQ_FIELD_POINTS:
-        return value <= BQ_FIELD_MAX_POINTS;
-    case BQ_FIELD_SIGNED:
-        return f->size == 4u || value + half < 2u * half;
-    default:
-        return f->size == 4u || value < 2u * half;
-    }
-}
-
-void settings_store_field(const bq_field *f, unsigned char *object, uint32_t value)
-{
-    unsigned char *at = object + f->offset;
-    const uint16_t u16 = (uint16_t)value;
+    const uint16_t half = (uint16_t)value;
 
     if (f->size == 4u) {
         memcpy(at, &value, sizeof value);
     } else if (f->size == 2u) {
-        memcpy(at, &u16, sizeof u16);
+        memcpy(at, &half, sizeof half);
     } else if (f->kind == (uint8_t)BQ_FIELD_BOOL) {
         const bool flag = value != 0u;
         memcpy(at, &flag, sizeof flag);
     } else {
         *at = (unsigned char)value;
     }
+}
+
+/* What comes back from a field is what fits into it. */
+bool settings_field_fits(const bq_field *f, uint32_t value)
+{
+    unsigned char copy[4];
+
+    settings_store_field(f, copy, value);
+    return settings_load_field(f, copy) == value &&
+           (f->kind != (uint8_t)BQ_FIELD_POINTS || value <= BQ_FIELD_MAX_POINTS);
 }

@@ -3,12 +3,12 @@
 #include "bqhost/telemetry.h"
 #include <string.h>
 
-#define BIT(id) ((uint16_t)(1u << (unsigned)(id)))
+#define BIT(id) ((uint32_t)1 << (unsigned)(id))
 #define REFUSED_PERIOD_MS 100u
 
-static const uint16_t of_period =
-    (uint16_t)(1u << BQ_FRAME_HEARTBEAT | 1u << BQ_FRAME_PACK | 1u << BQ_FRAME_CELLS |
-               1u << BQ_FRAME_TEMPERATURES | 1u << BQ_FRAME_FAULTS | 1u << BQ_FRAME_COUNTERS);
+#define OF_PERIOD                                                                                            \
+    (BIT(BQ_FRAME_HEARTBEAT) | BIT(BQ_FRAME_PACK) | BIT(BQ_FRAME_CELLS) | BIT(BQ_FRAME_TEMPERATURES) |       \
+     BIT(BQ_FRAME_FAULTS) | BIT(BQ_FRAME_COUNTERS))
 
 void bq_telemetry_init(bq_telemetry *t, const bq_can *can)
 {
@@ -73,10 +73,10 @@ static void look(bq_telemetry *t, const bq_telemetry_source *s)
         t->started = true;
         t->period_ms = s->now_ms;
         t->boot_ms = s->now_ms;
-        t->due = of_period | BIT(BQ_FRAME_BOOT);
+        t->due = OF_PERIOD | BIT(BQ_FRAME_BOOT);
     }
     if (moment(&t->period_ms, s->now_ms, period_of(s))) {
-        t->due |= of_period;
+        t->due |= OF_PERIOD;
     }
     if (moment(&t->boot_ms, s->now_ms, BQ_TELEMETRY_BOOT_MS)) {
         t->due |= BIT(BQ_FRAME_BOOT);
@@ -110,7 +110,7 @@ static bool next_frame(bq_telemetry *t, const bq_telemetry_source *s, bq_telemet
         if (bq_telemetry_frame(s, *id, index_of(t, *id), frame)) {
             return true;
         }
-        t->due &= (uint16_t)~BIT(*id);
+        t->due &= ~BIT(*id);
     }
     return false;
 }
@@ -122,7 +122,7 @@ static void advance(bq_telemetry *t, bq_telemetry_id id, const bq_telemetry_sour
         t->index++; /* no longer due when no cell is left */
         return;
     }
-    t->due &= (uint16_t)~BIT(id);
+    t->due &= ~BIT(id);
     if (id == BQ_FRAME_EVENT) {
         t->events++;
         t->running++;

@@ -6,21 +6,28 @@
 #define NO_VALUE 0xffffu
 #define CELLS_A_FRAME 3u
 
-static void put16(uint8_t *at, uint32_t value)
-{
-    at[0] = (uint8_t)value;
-    at[1] = (uint8_t)(value >> 8);
-}
+/* The bytes 0 to 3 and 4 to 7 of a frame, the first one lowest. */
+typedef struct halves {
+    uint32_t low, high;
+} halves;
 
 static void put32(uint8_t *at, uint32_t value)
 {
-    put16(at, value);
-    put16(at + 2, value >> 16);
+    for (unsigned i = 0; i < 4u; i++) {
+        at[i] = (uint8_t)value;
+        value >>= 8;
+    }
 }
 
-static uint8_t ones(uint32_t mask)
+/* Two numbers of 16 bits. */
+static uint32_t pair(uint32_t first, uint32_t second)
 {
-    uint8_t n = 0;
+    return (first & 0xffffu) | second << 16;
+}
+
+static uint32_t ones(uint32_t mask)
+{
+    uint32_t n = 0;
 
     for (; mask != 0u; mask &= mask - 1u) {
         n++;
@@ -28,9 +35,9 @@ static uint8_t ones(uint32_t mask)
     return n;
 }
 
-static uint8_t flag(bool set, unsigned bit)
+static uint32_t flag(bool set, unsigned bit)
 {
-    return (uint8_t)((set ? 1u : 0u) << bit);
+    return (uint32_t)set << bit;
 }
 
 static uint32_t active(const bq_telemetry_source *s)
@@ -38,55 +45,31 @@ static uint32_t active(const bq_telemetry_source *s)
     return s->app != NULL ? bq_app_pack(s->app)->faults : (uint32_t)1 << BQ_FAULT_CONFIG;
 }
 
-static uint8_t health(const bq_app *app)
+static uint32_t health(const bq_app *app)
 {
     const bq_action *a = bq_app_action(app);
     const bq_pack_input *in = bq_app_input(app);
 
-    return (uint8_t)(flag(a->charge_on, 0) | flag(a->discharge_on, 1) | flag(bq_app_outputs_on(app), 2) |
-                     flag(bq_app_pack(app)->summary.complete, 3) | flag(in->self_test == BQ_TEST_PASSED, 4) |
-                     flag(in->request == BQ_REQUEST_ON, 5));
+    return flag(a->charge_on, 0) | flag(a->discharge_on, 1) | flag(bq_app_outputs_on(app), 2) |
+           flag(bq_app_pack(app)->summary.complete, 3) | flag(in->self_test == BQ_TEST_PASSED, 4) |
+           flag(in->request == BQ_REQUEST_ON, 5);
 }
 
-static void heartbeat(const bq_telemetry_source *s, uint8_t *d)
+static void heartbeat(const bq_telemetry_source *s, halves *h)
 {
-    bq_pack_fault cause = BQ_FAULT_CONFIG;
+    uint32_t cause = (uint32_t)BQ_FAULT_CONFIG;
 
-    d[0] = (uint8_t)BQ_PACK_FAULT;
+    h->low = (uint32_t)BQ_PACK_FAULT;
     if (s->app != NULL) {
-        d[0] = (uint8_t)bq_app_pack(s->app)->state;
-        d[1] = health(s->app);
-        cause = bq_pack_cause(bq_app_pack(s->app));
+        h->low = (uint32_t)bq_app_pack(s->app)->state | health(s->app) << 8;
+        cause = (uint32_t)bq_pack_cause(bq_app_pack(s->app));
     }
-    d[2] = cause == BQ_FAULT_COUNT ? (uint8_t)0xff : (uint8_t)cause;
-    d[3] = ones(active(s));
-    put32(d + 4, s->now_ms);
+    h->low |= (cause == (uint32_t)BQ_FAULT_COUNT ? 0xffu : cause) << 16 | ones(active(s)) << 24;
+    h->high = s->now_ms;
 }
 
-static void pack(const bq_app *app, uint8_t *d)
-{
-    put32(d, bq_app_pack(app)->summary.pack_mv);
-    put32(d + 4, (uint32_t)bq_app_sample(app)->current_ma);
-}
-
-static void cells(const bq_pack_summary *y, uint8_t *d)
-{
-    put16(d, y->cell_min_mv);
-    put16(d + 2, y->cell_max_mv);
-    put16(d + 4, y->cell_min);
-    put16(d + 6, y->cell_max);
-}
-
-static void temperatures(const bq_pack_summary *y, uint8_t *d)
-{
-    put16(d, (uint32_t)y->temp_min_dc);
-    put16(d + 2, (uint32_t)y->temp_max_dc);
-    put16(d + 4, (uint32_t)y->soc_permille);
-    put16(d + 6, y->balancing);
-}
-
-/* In units of 10 ms, 255 = older. */
-static uint8_t current_age(const bq_app *app)
+/* In units of 10 ms, 255 = older or never measured. */
+static uint32_t current_age(const bq_app *app)
 {
     const bq_sample *s = bq_app_sample(app);
     const uint32_t since = bq_app_step_age_ms(app);
@@ -94,40 +77,57 @@ static uint8_t current_age(const bq_app *app)
     if (!s->current_valid || s->current_age_ms >= 2550u || since >= 2550u - s->current_age_ms) {
         return 255;
     }
-    return (uint8_t)((s->current_age_ms + since) / 10u);
+    return (s->current_age_ms + since) * 6554u >> 16; /* by 10, exact below 16389 */
 }
 
-static void faults(const bq_telemetry_source *s, uint8_t *d)
+static void faults(const bq_telemetry_source *s, halves *h)
 {
     const bq_boot *b = s->boot;
+    const bq_app *app = s->app;
+    uint32_t modules = 0, age = 255;
+    bq_status status = s->refused;
 
-    put32(d, active(s));
-    d[4] = s->app != NULL ? bq_app_modules_found(s->app) : (uint8_t)0;
-    d[5] = (uint8_t)(s->app != NULL ? bq_app_input(s->app)->monitor_status : s->refused);
-    d[6] = b != NULL ? (uint8_t)((unsigned)b->cause | flag(b->crashed, 7)) : (uint8_t)0;
-    d[7] = s->app != NULL ? current_age(s->app) : (uint8_t)255;
+    if (app != NULL) {
+        modules = bq_app_modules_found(app);
+        status = bq_app_input(app)->monitor_status;
+        age = current_age(app);
+    }
+    h->low = active(s);
+    h->high = modules | (uint32_t)(uint8_t)status << 8 | age << 24;
+    if (b != NULL) {
+        h->high |= (uint32_t)b->cause << 16 | flag(b->crashed, 23);
+    }
 }
 
-static bool event(const bq_pack *p, uint32_t number, uint8_t *d)
+static void boot(const bq_boot *b, halves *h)
+{
+    if (b == NULL) {
+        return;
+    }
+    h->low = (uint32_t)b->cause | flag(b->crashed, 8) | flag(b->crystal_failed, 9) | flag(b->image_ok, 10);
+    if (b->crashed) {
+        h->low |= b->crash.kind << 16;
+        h->high = b->crash.pc;
+    }
+}
+
+static bool event(const bq_pack *p, uint32_t number, halves *h)
 {
     const bq_pack_event *e = &p->events[number % BQ_PACK_EVENTS];
+    const uint32_t code = e->code, kind = e->kind;
     const bq_pack_fault_record *r;
 
-    if ((e->kind != (uint8_t)BQ_EVENT_FAULT && e->kind != (uint8_t)BQ_EVENT_RECOVERED) ||
-        e->code >= (uint8_t)BQ_FAULT_COUNT) {
+    if ((kind != (uint32_t)BQ_EVENT_FAULT && kind != (uint32_t)BQ_EVENT_RECOVERED) ||
+        code >= (uint32_t)BQ_FAULT_COUNT) {
         return false;
     }
-    r = &p->fault[e->code];
-    d[0] = e->code;
-    d[1] = e->kind == (uint8_t)BQ_EVENT_FAULT ? (uint8_t)1 : (uint8_t)0;
-    put16(d + 2, r->cell);
-    d[4] = r->device;
-    d[5] = r->sensor;
-    d[6] = (uint8_t)r->wire;
+    r = &p->fault[code];
+    h->low = code | flag(kind == (uint32_t)BQ_EVENT_FAULT, 8) | (uint32_t)r->cell << 16;
+    h->high = r->device | (uint32_t)r->sensor << 8 | (uint32_t)(uint8_t)r->wire << 16;
     return true;
 }
 
-static uint16_t value(const bq_sample *s, uint32_t cell)
+static uint32_t millivolts(const bq_sample *s, uint32_t cell)
 {
     if (cell >= s->cell_count || (s->cells[cell].quality & BQ_Q_VALID) == 0u) {
         return NO_VALUE;
@@ -135,95 +135,79 @@ static uint16_t value(const bq_sample *s, uint32_t cell)
     return s->cells[cell].mv;
 }
 
-static bool voltages(const bq_sample *s, uint32_t index, uint8_t *d)
+static bool voltages(const bq_sample *s, uint32_t index, halves *h)
 {
     const uint32_t first = index * CELLS_A_FRAME;
 
-    if (first >= s->cell_count) {
-        return false;
-    }
-    d[0] = (uint8_t)index;
-    d[1] = (uint8_t)s->sequence;
-    for (uint32_t i = 0; i < CELLS_A_FRAME; i++) {
-        put16(d + 2u + 2u * i, value(s, first + i));
-    }
-    return true;
+    h->low = (index & 0xffu) | (s->sequence & 0xffu) << 8 | millivolts(s, first) << 16;
+    h->high = pair(millivolts(s, first + 1u), millivolts(s, first + 2u));
+    return first < s->cell_count;
 }
 
-static void sample(const bq_sample *s, uint8_t *d)
-{
-    put32(d, s->sequence);
-    put32(d + 4, s->t_us);
-}
-
-static void counters(const bq_app *app, uint8_t *d)
+static void counters(const bq_app *app, halves *h)
 {
     const bq_link_stats *l = bq_app_link(app);
 
-    put32(d, bq_app_get_counters(app)->periods);
+    h->low = bq_app_get_counters(app)->periods;
     if (l != NULL) {
-        put32(d + 4, l->crc_errors + l->no_answers + l->implausible + l->bus_errors + l->write_errors);
-    }
-}
-
-static void boot(const bq_boot *b, uint8_t *d)
-{
-    if (b == NULL) {
-        return;
-    }
-    d[0] = (uint8_t)b->cause;
-    d[1] = (uint8_t)(flag(b->crashed, 0) | flag(b->crystal_failed, 1) | flag(b->image_ok, 2));
-    if (b->crashed) {
-        put16(d + 2, b->crash.kind);
-        put32(d + 4, b->crash.pc);
+        h->high = l->crc_errors + l->no_answers + l->implausible + l->bus_errors + l->write_errors;
     }
 }
 
 /* Frames that need a running loop. */
-static bool of_app(const bq_app *app, bq_telemetry_id id, uint32_t index, uint8_t *d)
+static bool of_app(const bq_app *app, bq_telemetry_id id, uint32_t index, halves *h)
 {
+    const bq_pack *p = bq_app_pack(app);
+    const bq_pack_summary *y = &p->summary;
+    const bq_sample *s = bq_app_sample(app);
+
     switch (id) {
     case BQ_FRAME_PACK:
-        pack(app, d);
-        return true;
+        h->low = y->pack_mv;
+        h->high = (uint32_t)s->current_ma;
+        break;
     case BQ_FRAME_CELLS:
-        cells(&bq_app_pack(app)->summary, d);
-        return true;
+        h->low = pair(y->cell_min_mv, y->cell_max_mv);
+        h->high = pair(y->cell_min, y->cell_max);
+        break;
     case BQ_FRAME_TEMPERATURES:
-        temperatures(&bq_app_pack(app)->summary, d);
-        return true;
+        h->low = pair((uint32_t)y->temp_min_dc, (uint32_t)y->temp_max_dc);
+        h->high = pair((uint32_t)y->soc_permille, y->balancing);
+        break;
     case BQ_FRAME_EVENT:
-        return event(bq_app_pack(app), index, d);
+        return event(p, index, h);
     case BQ_FRAME_VOLTAGES:
-        return voltages(bq_app_sample(app), index, d);
+        return voltages(s, index, h);
     case BQ_FRAME_SAMPLE:
-        sample(bq_app_sample(app), d);
-        return true;
-    case BQ_FRAME_COUNTERS:
-        counters(app, d);
-        return true;
+        h->low = s->sequence;
+        h->high = s->t_us;
+        break;
     default:
-        return false;
+        counters(app, h);
+        break;
     }
+    return true;
 }
 
 bool bq_telemetry_frame(const bq_telemetry_source *source, bq_telemetry_id id, uint32_t index,
                         bq_can_frame *frame)
 {
-    memset(frame, 0, sizeof *frame);
-    frame->id = BQ_TELEMETRY_ID + (uint32_t)id;
-    frame->len = 8;
-    switch (id) {
-    case BQ_FRAME_HEARTBEAT:
-        heartbeat(source, frame->data);
-        return true;
-    case BQ_FRAME_FAULTS:
-        faults(source, frame->data);
-        return true;
-    case BQ_FRAME_BOOT:
-        boot(source->boot, frame->data);
-        return true;
-    default:
-        return source->app != NULL && of_app(source->app, id, index, frame->data);
+    halves h = {0, 0};
+    bool known = true;
+
+    if (id == BQ_FRAME_HEARTBEAT) {
+        heartbeat(source, &h);
+    } else if (id == BQ_FRAME_FAULTS) {
+        faults(source, &h);
+    } else if (id == BQ_FRAME_BOOT) {
+        boot(source->boot, &h);
+    } else {
+        known = id < BQ_FRAME_BOOT && source->app != NULL && of_app(source->app, id, index, &h);
     }
+    frame->id = BQ_TELEMETRY_ID + (uint32_t)id;
+    frame->extended = false;
+    frame->len = 8;
+    put32(frame->data, h.low);
+    put32(frame->data + 4, h.high);
+    return known;
 }

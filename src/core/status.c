@@ -1,42 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bqhost/status.h"
 
+/* From BQ_PENDING downwards, one after the other; empty where no status has the number. */
+static const char names[] =
+    "BQ_PENDING\0BQ_OK\0"
+    "BQ_E_ARG\0BQ_E_STATE\0BQ_E_BUSY\0BQ_E_UNSUPPORTED\0\0\0\0\0\0" /* -1 to -9 */
+    "BQ_E_RANGE\0BQ_E_NO_CODE\0BQ_E_COV_CUV\0BQ_E_DEVICES\0BQ_E_CELLS\0BQ_E_UNLATCHED\0BQ_E_CLOCK\0"
+    "BQ_E_CONFIG\0\0\0" /* to -19 */
+    "BQ_E_BUS\0BQ_E_TIMEOUT\0BQ_E_NO_ANSWER\0BQ_E_CRC\0BQ_E_IMPLAUSIBLE\0BQ_E_NACK\0BQ_E_ARBITRATION\0"
+    "\0\0\0" /* to -29 */
+    "BQ_E_VERIFY\0BQ_E_NOT_FOUND\0BQ_E_EXTRA_DEVICE\0BQ_E_LOCKED_UP\0BQ_E_DEFECTIVE\0BQ_E_LINE_STUCK\0"
+    "BQ_E_CHAIN_BROKEN\0BQ_E_PERSISTS\0BQ_E_NOT_BLANK\0BQ_E_VOLTAGE\0BQ_E_STALE\0BQ_E_CRC_OFF";
+
 const char *bq_status_name(bq_status status)
 {
-    switch (status) {
-    case BQ_OK: return "BQ_OK";
-    case BQ_PENDING: return "BQ_PENDING";
-    case BQ_E_ARG: return "BQ_E_ARG";
-    case BQ_E_STATE: return "BQ_E_STATE";
-    case BQ_E_BUSY: return "BQ_E_BUSY";
-    case BQ_E_UNSUPPORTED: return "BQ_E_UNSUPPORTED";
-    case BQ_E_RANGE: return "BQ_E_RANGE";
-    case BQ_E_NO_CODE: return "BQ_E_NO_CODE";
-    case BQ_E_COV_CUV: return "BQ_E_COV_CUV";
-    case BQ_E_DEVICES: return "BQ_E_DEVICES";
-    case BQ_E_CELLS: return "BQ_E_CELLS";
-    case BQ_E_UNLATCHED: return "BQ_E_UNLATCHED";
-    case BQ_E_CLOCK: return "BQ_E_CLOCK";
-    case BQ_E_CONFIG: return "BQ_E_CONFIG";
-    case BQ_E_BUS: return "BQ_E_BUS";
-    case BQ_E_TIMEOUT: return "BQ_E_TIMEOUT";
-    case BQ_E_NO_ANSWER: return "BQ_E_NO_ANSWER";
-    case BQ_E_CRC: return "BQ_E_CRC";
-    case BQ_E_IMPLAUSIBLE: return "BQ_E_IMPLAUSIBLE";
-    case BQ_E_NACK: return "BQ_E_NACK";
-    case BQ_E_ARBITRATION: return "BQ_E_ARBITRATION";
-    case BQ_E_VERIFY: return "BQ_E_VERIFY";
-    case BQ_E_NOT_FOUND: return "BQ_E_NOT_FOUND";
-    case BQ_E_EXTRA_DEVICE: return "BQ_E_EXTRA_DEVICE";
-    case BQ_E_LOCKED_UP: return "BQ_E_LOCKED_UP";
-    case BQ_E_DEFECTIVE: return "BQ_E_DEFECTIVE";
-    case BQ_E_LINE_STUCK: return "BQ_E_LINE_STUCK";
-    case BQ_E_CHAIN_BROKEN: return "BQ_E_CHAIN_BROKEN";
-    case BQ_E_PERSISTS: return "BQ_E_PERSISTS";
-    case BQ_E_NOT_BLANK: return "BQ_E_NOT_BLANK";
-    case BQ_E_VOLTAGE: return "BQ_E_VOLTAGE";
-    case BQ_E_STALE: return "BQ_E_STALE";
-    case BQ_E_CRC_OFF: return "BQ_E_CRC_OFF";
+    const char *name = names;
+    int skip = (int)BQ_PENDING - (int)status;
+
+    if (skip < 0 || skip > (int)BQ_PENDING - (int)BQ_E_CRC_OFF) {
+        return "BQ_E_?";
     }
-    return "BQ_E_?";
+    for (; skip > 0; skip--) {
+        while (*name++ != '\0') {
+        }
+    }
+    return *name != '\0' ? name : "BQ_E_?";
 }
