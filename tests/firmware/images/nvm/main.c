@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Test image: at every start it loads the settings (eight equal bytes), tells them as CAN frame 0x200
+/* Test image: at every start it loads the settings (equal bytes), tells them as CAN frame 0x200
  * {status, value, all equal}, saves the next value, tells the outcome as 0x201 {status, value}, and sleeps.
  */
 #include "bqhost/settings.h"
+#include "nvm.h"
 #include "stm32_can.h"
 #include "stm32_chip.h"
 #include "stm32_clock.h"
@@ -14,19 +15,17 @@
 #include "stm32_time.h"
 #include "stm32_watchdog.h"
 
-#define BYTES 8u
-
 static const stm32_pin pin_table[] = {
-    {STM32_NO_LINE, STM32_PORT_B, 8, STM32_PIN_AF, STM32_PULL_UP, 0, 4, STM32_EDGE_NONE},
-    {STM32_NO_LINE, STM32_PORT_B, 9, STM32_PIN_AF, STM32_PULL_NONE, 1, 4, STM32_EDGE_NONE}};
+    {STM32_NO_LINE, STM32_PORT_B, 8, STM32_PIN_AF, STM32_PULL_UP, 0, NVM_CAN_AF, STM32_EDGE_NONE},
+    {STM32_NO_LINE, STM32_PORT_B, 9, STM32_PIN_AF, STM32_PULL_NONE, 1, NVM_CAN_AF, STM32_EDGE_NONE}};
 static const stm32_pins pins = {pin_table, 2};
-static const stm32_nvm sectors = {{0x0801F000u, 0x0801F800u}, 2048u};
+static const stm32_nvm sectors = NVM_SECTORS;
 
 static bq_boot boot;
 static stm32_time timebase;
 static stm32_can can;
-static uint8_t stored[BYTES];
-static const bq_settings_part part = {&bq_byte_fields, stored, BYTES};
+static uint8_t stored[NVM_BYTES];
+static const bq_settings_part part = {&bq_byte_fields, stored, NVM_BYTES};
 static const bq_settings settings = {&part, 1};
 
 void board_outputs_safe(void)
@@ -38,10 +37,7 @@ void tim2_handler(void)
     stm32_time_irq(&timebase);
 }
 
-void can_handler(void)
-{
-    stm32_can_irq(&can);
-}
+NVM_CAN_HANDLERS
 
 static void start(void)
 {
@@ -62,7 +58,7 @@ static void tell(uint32_t id, bq_status status)
     frame.data[0] = (uint8_t)status;
     frame.data[1] = stored[0];
     frame.data[2] = 1;
-    for (unsigned i = 1; i < BYTES; i++) {
+    for (unsigned i = 1; i < NVM_BYTES; i++) {
         if (stored[i] != stored[0]) {
             frame.data[2] = 0;
         }
@@ -79,7 +75,7 @@ void board_main(void)
     start();
     tell(0x200, bq_settings_load(&settings, &nvm));
     next = (uint8_t)(stored[0] + 1u);
-    for (unsigned i = 0; i < BYTES; i++) {
+    for (unsigned i = 0; i < NVM_BYTES; i++) {
         stored[i] = next;
     }
     tell(0x201, bq_settings_save(&settings, &nvm));

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Settings in the flash of the STM32F072, written by the driver of the flash and the library's settings
- * together, with the supply failing in every single operation. The image f072-nvm saves once per start and
- * tells what it found. */
+/* Settings in the flash of the STM32F072, written by the driver of the flash and the library's
+ * settings together, with the supply failing in every single operation. The image f072-nvm saves
+ * once per start and tells what it found. */
 #include "emu.h"
 #include "unity.h"
 #include <stdio.h>
 #include <string.h>
 
 #define MS 1000000ull
-#define BUS ((uint8_t)-20) /* BQ_E_BUS */
+#define SAVE_MS (ERASE_MS + 100u) /* a start and a save */
+#define BUS ((uint8_t)-20)        /* BQ_E_BUS */
+
+#define IMAGE_OF(wrong) BROKEN "_" wrong ".bin"
 
 static emu *e;
 static emu_can_frame loaded, saved; /* newest frames 0x200 and 0x201 */
@@ -28,16 +31,21 @@ static emu_can_result can_out(void *ctx, unsigned bus, const emu_can_frame *fram
     return EMU_CAN_ACKED;
 }
 
-static bool begin(void)
+static bool begin_with(const char *image)
 {
     const emu_world world = {.can_out = can_out};
     loads = saves = 0;
-    e = emu_create(&emu_f072, &world);
-    if (e == NULL || !emu_cpu_open(e) || !emu_load_file(e, IMAGE)) {
+    e = emu_create(&CHIP, &world);
+    if (e == NULL || !emu_cpu_open(e) || !emu_load_file(e, image)) {
         return false;
     }
     emu_reset(e, EMU_CAUSE_POWER);
     return true;
+}
+
+static bool begin(void)
+{
+    return begin_with(IMAGE);
 }
 
 void setUp(void)
@@ -58,7 +66,7 @@ static void run(unsigned ms)
 static void restart(void)
 {
     emu_reset(e, EMU_CAUSE_PIN);
-    run(300);
+    run(SAVE_MS);
 }
 
 static void expect_loaded(int status, int value)
@@ -77,7 +85,7 @@ static void clean(void)
 
 static void test_one_save_after_another(void)
 {
-    run(300);
+    run(SAVE_MS);
     expect_loaded(-31, 0);
     TEST_ASSERT_EQUAL_INT(0, saved.data[0]);
     for (int value = 1; value <= 5; value++) {
@@ -94,17 +102,17 @@ static void test_one_save_after_another(void)
 static void test_power_lost_in_each_operation(void)
 {
     unsigned before, operations, lost = 0;
-    run(300);
+    run(SAVE_MS);
     before = emu_flash_ops(e);
     restart();
     operations = emu_flash_ops(e) - before;
-    TEST_ASSERT_TRUE(operations >= 20); /* one page and a record of half-words */
-    for (unsigned n = 1; n <= 2u * operations; n++) {
+    TEST_ASSERT_TRUE(operations >= OPERATIONS); /* one page and a record of half-words */
+    for (unsigned n = 1; n <= ROUNDS * operations; n++) {
         int value = saved.data[1];
-        emu_lose_power_at_flash_op(e, (n - 1u) / 2u + 1u, n, 20 * MS);
+        emu_lose_power_at_flash_op(e, (n - 1u) / ROUNDS + 1u, n, 20 * MS);
         emu_reset(e, EMU_CAUSE_PIN);
         run(60);
-        run(400);
+        run(ERASE_MS + 200u);
         TEST_ASSERT_EQUAL_INT(0, loaded.data[0]);
         TEST_ASSERT_TRUE(loaded.data[1] == (value & 255) || loaded.data[1] == ((value + 1) & 255));
         TEST_ASSERT_EQUAL_INT(1, loaded.data[2]);
@@ -112,7 +120,7 @@ static void test_power_lost_in_each_operation(void)
         TEST_ASSERT_EQUAL_INT((loaded.data[1] + 1) & 255, saved.data[1]);
         lost += loaded.data[1] == (value & 255);
     }
-    TEST_ASSERT_TRUE(lost >= operations); /* the fault did strike before the commit */
+    TEST_ASSERT_TRUE(2u * lost >= ROUNDS * operations); /* the fault did strike before the commit */
 }
 
 /* Below the level of the voltage detector (2.9 V at most) nothing is begun: the save fails, the old record
@@ -120,7 +128,7 @@ static void test_power_lost_in_each_operation(void)
 static void test_low_supply(void)
 {
     unsigned before;
-    run(300);
+    run(SAVE_MS);
     restart();
     expect_loaded(0, 1);
     before = emu_flash_ops(e);
@@ -136,6 +144,30 @@ static void test_low_supply(void)
     clean();
 }
 
+/* ---- images that break a rule of the flash ------------------------------------------------------------- */
+
+static void broken(const char *image)
+{
+    tearDown();
+    TEST_ASSERT_TRUE_MESSAGE(begin_with(image), image);
+    run(SAVE_MS);
+    for (unsigned i = 0; i < 2u; i++) { /* the third save comes into a sector that is used */
+        restart();
+    }
+    TEST_ASSERT_TRUE(saved.data[0] != 0u);
+    TEST_ASSERT_TRUE(emu_misuse_of(e, "FLASH", NULL) > 0u);
+}
+
+static void test_program_without_erase(void)
+{
+    broken(IMAGE_OF("no_erase"));
+}
+
+static void test_program_while_locked(void)
+{
+    broken(IMAGE_OF("locked"));
+}
+
 int main(void)
 {
     if (!begin()) {
@@ -147,5 +179,7 @@ int main(void)
     RUN_TEST(test_one_save_after_another);
     RUN_TEST(test_power_lost_in_each_operation);
     RUN_TEST(test_low_supply);
+    RUN_TEST(test_program_without_erase);
+    RUN_TEST(test_program_while_locked);
     return UNITY_END();
 }
