@@ -2,10 +2,18 @@
 /* From codes to single readings (X0-SEQ-23). */
 #include "x0_internal.h"
 
+/* uV / 1000 up to 6.7 V. A Cortex-M0 has no divider, and this is done for every cell: 2^19 / 125 is 4194.3,
+ * so the product is at most one too low. */
+static uint32_t thousandth(uint32_t uv)
+{
+    uint32_t mv = (uv >> 3) * 4194u >> 19;
+    return uv - mv * 1000u >= 1000u ? mv + 1u : mv;
+}
+
 uint32_t x0_cell_mv(const bq769x0 *d, unsigned input)
 {
     int32_t uv = bq769x0_cell_uv(d->achieved.trim, d->code[input]);
-    uint32_t mv = uv < 0 ? 0u : ((uint32_t)uv + 500u) / 1000u;
+    uint32_t mv = uv < 0 ? 0u : thousandth((uint32_t)uv + 500u);
     return (mv * d->gain2_q15 + 16384u) >> 15;
 }
 
