@@ -40,12 +40,6 @@ static inline void stm32_wfi(void)
 }
 
 /** Clears a stale request of interrupt `irq`, gives it `priority` 0 (highest) .. 3 and enables it. */
-static inline void stm32_irq_enable(unsigned irq, unsigned priority)
-{
-    unsigned shift = 8u * (irq & 3u) + 6u; /* the upper two bits are implemented in both cores */
-    STM32_NVIC_IPR(irq >> 2) = (STM32_NVIC_IPR(irq >> 2) & ~(3u << shift)) | (priority << shift);
-    STM32_NVIC_ICPR(irq >> 5) = 1u << (irq & 31u);
-    STM32_NVIC_ISER(irq >> 5) = 1u << (irq & 31u);
-}
+void stm32_irq_enable(unsigned irq, unsigned priority);
 
 #endif

@@ -24,24 +24,6 @@ static void clock_ports(const stm32_pins *pins)
     (void)STM32_RCC_GPIOENR; /* two cycles until the clock is there */
 }
 
-static void set_level(const stm32_pin *p)
-{
-    stm32_pin_write(p->port, p->pin, p->initial != 0u);
-}
-
-void stm32_pins_safe(const stm32_pins *pins)
-{
-    clock_ports(pins);
-    for (unsigned i = 0; i < pins->count; i++) {
-        const stm32_pin *p = &pins->pin[i];
-        if (p->mode == STM32_PIN_OUTPUT) {
-            set_level(p);
-            field(&stm32_port(p->port)->otyper, p->pin, 1, 0);
-            field(&stm32_port(p->port)->moder, p->pin, 2, 1);
-        }
-    }
-}
-
 static void route_exti(const stm32_pin *p)
 {
     stm32_exti_regs *exti = STM32_EXTI;
@@ -61,13 +43,23 @@ static void init_pin(const stm32_pin *p)
 {
     static const uint8_t moder[] = {0, 1, 2, 2, 3};
     stm32_gpio_regs *port = stm32_port(p->port);
-    set_level(p);
+    stm32_pin_write(p->port, p->pin, p->initial != 0u);
     field(&port->otyper, p->pin, 1, p->mode == STM32_PIN_AF_OD ? 1u : 0u);
     field(&port->pupdr, p->pin, 2, p->pull);
     field(&port->afr[p->pin >> 3], p->pin & 7u, 4, p->af);
     field(&port->moder, p->pin, 2, moder[p->mode]);
     if (p->edge != STM32_EDGE_NONE) {
         route_exti(p);
+    }
+}
+
+void stm32_pins_safe(const stm32_pins *pins)
+{
+    clock_ports(pins);
+    for (unsigned i = 0; i < pins->count; i++) {
+        if (pins->pin[i].mode == STM32_PIN_OUTPUT) {
+            init_pin(&pins->pin[i]);
+        }
     }
 }
 

@@ -51,14 +51,15 @@ static bool guard_whole(void)
 void stm32_life_pass(void)
 {
     stm32_record *r = &stm32_life_record;
-    uint32_t now = stm32_now_us();
+    uint32_t now = stm32_now_us(), whole;
     if (!guard_whole()) {
         stm32_crash(STM32_CRASH_GUARD);
     }
     r->rest_us += now - r->last_us;
     r->last_us = now;
-    r->uptime_ms += r->rest_us / 1000u;
-    r->rest_us %= 1000u;
+    whole = r->rest_us / 1000u;
+    r->uptime_ms += whole;
+    r->rest_us -= whole * 1000u;
 }
 
 uint32_t stm32_stack_free(void)
@@ -90,15 +91,16 @@ void stm32_reset(void)
     restart();
 }
 
-/* `frame`: what the core pushed when the exception began, NULL if the stack does not hold it. */
-static void keep(uint32_t kind, const uint32_t *frame, uint32_t lr, uint32_t sp)
+/* `frame`: what the core pushed when the exception began, NULL if the stack does not hold it; then `pc`. */
+static void keep(uint32_t kind, const uint32_t *frame, uint32_t pc, uint32_t sp)
 {
     stm32_record *r = &stm32_life_record;
     bq_crash *c = &r->crash;
     memset(c, 0, sizeof *c);
     c->kind = kind;
     c->sp = sp;
-    c->lr = lr;
+    c->pc = pc;
+    c->lr = pc;
     if (frame != NULL) {
         c->lr = frame[5];
         c->pc = frame[6];
@@ -125,8 +127,6 @@ void stm32_crash(uint32_t kind)
     __asm volatile("mov %0, sp" : "=r"(sp));
     board_outputs_safe();
     keep(kind, NULL, pc, sp);
-    stm32_life_record.crash.pc = pc;
-    stm32_life_record.check = stm32_crc32(0, &stm32_life_record.crash, sizeof(bq_crash));
     restart();
 }
 

@@ -48,9 +48,28 @@ static bq_status nvm_erase(void *ctx, uint8_t sector)
     return plain(stm32_flash_erase(nvm->base[sector], nvm->sector_bytes));
 }
 
+static bq_status no_program(void *ctx, uint8_t sector, uint32_t offset, const void *data, size_t len)
+{
+    (void)ctx, (void)sector, (void)offset, (void)data, (void)len;
+    return BQ_E_UNSUPPORTED;
+}
+
+static bq_status no_erase(void *ctx, uint8_t sector)
+{
+    (void)ctx, (void)sector;
+    return BQ_E_UNSUPPORTED;
+}
+
 bq_nvm stm32_nvm_memory(const stm32_nvm *nvm)
 {
     static const bq_nvm_ops ops = {nvm_read, nvm_program, nvm_erase};
+    bq_nvm memory = {&ops, (void *)(uintptr_t)nvm, 2, STM32_FLASH_UNIT, nvm->sector_bytes};
+    return memory;
+}
+
+bq_nvm stm32_nvm_reader(const stm32_nvm *nvm)
+{
+    static const bq_nvm_ops ops = {nvm_read, no_program, no_erase};
     bq_nvm memory = {&ops, (void *)(uintptr_t)nvm, 2, STM32_FLASH_UNIT, nvm->sector_bytes};
     return memory;
 }

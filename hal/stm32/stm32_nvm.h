@@ -18,4 +18,8 @@ typedef struct stm32_nvm {
  * result. */
 bq_nvm stm32_nvm_memory(const stm32_nvm *nvm);
 
+/** The same to read only, for an image that never writes its settings: erasing and programming are
+ * BQ_E_UNSUPPORTED, and their code takes no flash. */
+bq_nvm stm32_nvm_reader(const stm32_nvm *nvm);
+
 #endif

@@ -61,11 +61,7 @@
 #define STM32_CAN_BTR_500K ((2u - 1u) << 24 | (2u - 1u) << 20 | (11u - 1u) << 16 | (6u - 1u))
 
 /** Clocks a peripheral on APB1; it can be used on return. */
-static inline void stm32_apb1_enable(uint32_t mask)
-{
-    STM32_RCC_APB1ENR |= mask;
-    (void)STM32_RCC_APB1ENR;
-}
+void stm32_apb1_enable(uint32_t mask);
 
 /** Enables all interrupts of the CAN controller. */
 static inline void stm32_can_irqs_enable(unsigned priority)

@@ -6,7 +6,6 @@
 #include "stm32_clock.h"
 #include "stm32_image.h"
 #include "stm32_nvm.h"
-#include "stm32_supply.h"
 #include "stm32_watchdog.h"
 
 static const stm32_pin pin_table[] = {BOARD_PINS};
@@ -28,7 +27,6 @@ void board_start(board_parts *p)
     p->boot.image_crc = stm32_image_stored_crc();
     stm32_watchdog_start();
     stm32_time_init(&p->time);
-    stm32_supply_init();
     stm32_pins_init(&pins);
     stm32_irq_enable(STM32_IRQ_EXTI0_1, 3);
     stm32_uart_init(&p->uart, &p->time, BOARD_BAUD);
@@ -43,7 +41,7 @@ bq_board board_table(board_parts *p)
                   .clock = stm32_clock(),
                   .can = stm32_can_bus(&p->can),
                   .console = stm32_uart_stream(&p->uart),
-                  .nvm = stm32_nvm_memory(&settings),
+                  .nvm = stm32_nvm_reader(&settings),
                   .mcu = stm32_mcu(&p->boot)};
     return b;
 }
