@@ -19,8 +19,8 @@ case $preset in *-clang) command -v clang-19 >/dev/null && command -v ld.lld-19 
 
 limits() { # flash and RAM in bytes
     case $preset in
-    lv-f072) echo 40960 8192 ;;
-    lv-f072-clang) echo 44032 8192 ;;
+    lv-f072) echo 36864 8192 ;;
+    lv-f072-clang) echo 39936 8192 ;;
     f072-nvm) echo 16384 4096 ;;
     hv-f405* | f405-afe) echo 49152 20480 ;;
     *) echo 0 0 ;;
