@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bqhost/status.h"
+#include <stdint.h>
 
 /* From BQ_PENDING downwards, one after the other; empty where no status has the number. */
 static const char names[] =
@@ -15,12 +16,12 @@ static const char names[] =
 const char *bq_status_name(bq_status status)
 {
     const char *name = names;
-    int skip = (int)BQ_PENDING - (int)status;
+    uint32_t skip = (uint32_t)BQ_PENDING - (uint32_t)(int32_t)status; /* large for what is above BQ_PENDING */
 
-    if (skip < 0 || skip > (int)BQ_PENDING - (int)BQ_E_CRC_OFF) {
+    if (skip > (uint32_t)((int32_t)BQ_PENDING - (int32_t)BQ_E_CRC_OFF)) {
         return "BQ_E_?";
     }
-    for (; skip > 0; skip--) {
+    for (; skip > 0u; skip--) {
         while (*name++ != '\0') {
         }
     }

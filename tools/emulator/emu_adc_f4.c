@@ -84,7 +84,7 @@ static unsigned resolution_bits(const emu_periph *p)
 static unsigned conversion_cycles(const emu_periph *p)
 {
     static const uint16_t sampling[8] = {3, 15, 28, 56, 84, 112, 144, 480};
-    unsigned c = channel(p);
+    unsigned c = channel(p) <= 18u ? channel(p) : 18u; /* there are no more */
     uint32_t smpr = c > 9 ? *reg(p, SMPR1) >> (c - 10u) * 3u : *reg(p, SMPR2) >> c * 3u;
 
     return sampling[smpr & 7u] + resolution_bits(p);

@@ -77,7 +77,8 @@ int emu_gpio_pull(const emu *e, unsigned number, unsigned pin)
 bool emu_pin_level(emu *e, unsigned number, unsigned pin)
 {
     const emu_world *w = emu_outside(e);
-    int outside = w->pin_in(w->ctx, number, pin);
+    bool exists = port(e, number) != NULL; /* EXTI can be pointed at a port that this chip has not got */
+    int outside = exists ? w->pin_in(w->ctx, number, pin) : 0;
     emu_drive own = emu_gpio_drive(e, number, pin);
 
     if (outside == 0 || own == EMU_DRIVE_LOW) {
