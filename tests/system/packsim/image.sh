@@ -45,8 +45,9 @@ if [ "$status" -ne 0 ]; then
     [ "$status" -eq 1 ] && [ "$(failed_of "$scratch/$name.out")" = "$(failed_of "$scratch/$name.host.out")" ] || exit 1
 fi
 
-# Within one control period, and the few milliseconds by which the scans of the two lie apart. The host build starts at once; a board checks its image and starts its clocks first. What
-# the board decides is seen when it tells it: faults at once, the state once a period.
+# Within one control period, and the few milliseconds by which the scans of the two lie apart. The host build starts at
+# once; a board starts its clocks and checks its image first. What the board decides is seen when it tells it: faults at
+# once, the state once a period.
 awk -v period="$(seconds_of period)" -v start=0.15 -v apart=0.02 '
     { key = $2 == "fault" ? $2 " " $3 : $2; text = $3 " " $4 }
     FNR == NR { host[key, ++hosts[key]] = text; at[key, hosts[key]] = $1; next }
