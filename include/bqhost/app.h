@@ -16,6 +16,8 @@
  *   contactor waits for no monitor. So the line is low at the latest
  *       pack.comm_timeout_ms + 1.25 x period_ms
  *   after the conversion start of the last complete valid picture, plus the lateness of the caller.
+ * - A self-test that passed is followed by two pack steps in the next passes, with the picture there is,
+ *   instead of one period later each: the first leads to standby, the second acts on a request that waits.
  * - With a contradicting feedback contact: BQ_PACK_MISMATCH_MS + 1.25 x period_ms.
  * - A request off or sleep opens the contactor in the next bq_app_step() (the monitor's own FETs with the
  *   action of the step that follows).

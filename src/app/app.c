@@ -224,6 +224,8 @@ static void write_outputs(bq_app *app)
 
 static void step_pack(bq_app *app)
 {
+    const bq_pack_state_id before = app->pack.state;
+
     if (app->job == BQ_JOB_SCAN && !app->step_now) {
         bq_app_count(&app->counters.late_scans);
     }
@@ -237,7 +239,8 @@ static void step_pack(bq_app *app)
     bq_pack_step(&app->pack, &app->sample, &app->input, app->now_ms, &app->action);
     app->step_us = app->last_us;
     app->step_ms = app->now_ms;
-    app->step_now = false;
+    /* a test that passed is followed by one more step, which acts on a request that waits */
+    app->step_now = before == BQ_PACK_SELF_TEST && app->pack.state == BQ_PACK_STANDBY;
     write_outputs(app);
 }
 

@@ -88,6 +88,8 @@ static void self_test_ended(bq_app *app, bq_status status)
     if (status != BQ_OK) {
         bq_app_count(&app->counters.self_test_failures);
         begin_pause(app);
+    } else {
+        app->step_now = true; /* the way to the outputs goes on without waiting for the next scan */
     }
 }
 

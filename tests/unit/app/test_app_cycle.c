@@ -42,8 +42,9 @@ static void test_the_way_up_and_the_order_inside_a_period(void)
 {
     bq_app_request(&f.app, BQ_REQUEST_ON);
     fake_run(&f, 1000);
-    /* a step before anything is known, bring-up, scan + step + apply, self-test, then one round per period */
-    TEST_ASSERT_EQUAL_MEMORY("Pmbsmatsmasma1smasma", f.order, 20);
+    /* a step before anything is known, bring-up, scan + step + apply, self-test + two steps, apply, then one
+     * round per period */
+    TEST_ASSERT_EQUAL_MEMORY("Pmbsmatmma1smasmasma", f.order, 20);
     TEST_ASSERT_EQUAL(BQ_PACK_ON, fake_state(&f));
     TEST_ASSERT_TRUE(bq_app_action(&f.app)->charge_on);
     TEST_ASSERT_EQUAL(FAKE_CELLS, bq_app_sample(&f.app)->cell_count);

@@ -112,11 +112,85 @@ static void test_a_request_off_opens_in_the_very_next_pass(void)
     TEST_ASSERT_FALSE(f.closed);
 }
 
+/* Runs until the self-test of the first way up has ended; the clock stands still in between. */
+static void until_tested(void)
+{
+    while (bq_app_input(&f.app)->self_test == BQ_TEST_NONE) {
+        f.us += bq_app_step(&f.app);
+    }
+}
+
+/* A test that passed is acted on at once: two steps, not two periods. */
+static void test_the_way_up_does_not_wait_for_another_scan(void)
+{
+    uint32_t scans, steps, passed = 0, hint = 0;
+
+    bq_app_request(&f.app, BQ_REQUEST_ON);
+    until_tested();
+    scans = f.job[BQ_JOB_SCAN].begun;
+    steps = counters()->steps;
+    while (!f.closed) {
+        passed += hint;
+        f.us += hint;
+        hint = bq_app_step(&f.app);
+    }
+    TEST_ASSERT_EQUAL(BQ_PACK_ON, fake_state(&f));
+    TEST_ASSERT_EQUAL(scans, f.job[BQ_JOB_SCAN].begun);
+    TEST_ASSERT_EQUAL(steps + 2u, counters()->steps);
+    TEST_ASSERT_LESS_OR_EQUAL(3100, passed); /* what the action takes */
+    TEST_ASSERT_EQUAL(0, counters()->late_scans);
+    TEST_ASSERT_EQUAL(0, counters()->overruns);
+}
+
+/* Nobody asks for the outputs, or the test failed: no step is repeated for ever. */
+static void test_the_extra_steps_are_few(void)
+{
+    uint32_t steps;
+
+    until_tested();
+    steps = counters()->steps;
+    for (int pass = 0; pass < 20; pass++) {
+        (void)bq_app_step(&f.app);
+    }
+    TEST_ASSERT_EQUAL(BQ_PACK_STANDBY, fake_state(&f));
+    TEST_ASSERT_EQUAL(steps + 2u, counters()->steps);
+
+    fake_init(&f, 0);
+    f.job[BQ_JOB_SELF_TEST].end = BQ_E_CHAIN_BROKEN;
+    TEST_ASSERT_EQUAL(BQ_OK, fake_start(&f, &config, false));
+    bq_app_request(&f.app, BQ_REQUEST_ON);
+    until_tested();
+    steps = counters()->steps;
+    for (int pass = 0; pass < 20; pass++) {
+        (void)bq_app_step(&f.app);
+    }
+    TEST_ASSERT_EQUAL(steps, counters()->steps);
+    TEST_ASSERT_FALSE(f.closed);
+}
+
+/* The two steps judge what there is: a picture that is not complete any more does not become one. */
+static void test_the_extra_steps_do_not_close_on_doubt(void)
+{
+    bq_app_request(&f.app, BQ_REQUEST_ON);
+    f.job[BQ_JOB_SELF_TEST].takes_us = 50000;
+    while (f.running != BQ_JOB_SELF_TEST) {
+        f.us += bq_app_step(&f.app);
+    }
+    f.faults = BQ_F_CELL_OV; /* seen by the copy that belongs to the step */
+    until_tested();
+    for (int pass = 0; pass < 20; pass++) {
+        f.us += bq_app_step(&f.app) == 0u ? 10u : 0u;
+    }
+    TEST_ASSERT_FALSE(f.closed);
+    TEST_ASSERT_TRUE(fake_state(&f) != BQ_PACK_ON);
+}
+
 /* ---- the user's wishes ----------------------------------------------------------------------- */
 
 static void test_balancing_can_be_switched_off_and_on(void)
 {
     config.pack.balance_rest_ms = 0;
+    config.pack.balance_duty_percent = 100; /* every step, however many there were */
     TEST_ASSERT_EQUAL(BQ_OK, fake_start(&f, &config, true));
     f.mv[2] = 3800;
     fake_on(&f);
@@ -178,6 +252,9 @@ int main(void)
     RUN_TEST(test_a_scan_that_ends_behind_a_late_step_gets_its_own);
     RUN_TEST(test_a_late_caller_does_not_make_values_younger);
     RUN_TEST(test_a_request_off_opens_in_the_very_next_pass);
+    RUN_TEST(test_the_way_up_does_not_wait_for_another_scan);
+    RUN_TEST(test_the_extra_steps_are_few);
+    RUN_TEST(test_the_extra_steps_do_not_close_on_doubt);
     RUN_TEST(test_balancing_can_be_switched_off_and_on);
     RUN_TEST(test_a_self_test_can_be_asked_for_while_outputs_are_off);
     RUN_TEST(test_no_self_test_while_an_output_is_on_or_asleep);
