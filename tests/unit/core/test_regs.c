@@ -104,7 +104,7 @@ static void test_test_mode_and_programming_cannot_be_asked_for(void)
  * PL-REG-15, PL-REG-16, PL-REG-18, PL-REG-19, PL-REG-20, PL-REG-21,
  * PL-REG-22, PL-REG-23, PL-REG-25, PL-REG-26, PL-REG-27, PL-REG-28, PL-REG-29, PL-REG-31, PL-REG-32,
  * PL-REG-33, PL-REG-34, PL-REG-36, PL-REG-37, PL-REG-38, PL-REG-39, PL-REG-40, PL-REG-41, PL-REG-42, PL-REG-43,
- * PL-REG-44, PL-REG-45, PL-REG-46, PL-REG-47, PL-REG-48 */
+ * PL-REG-44, PL-REG-45, PL-REG-46, PL-REG-47, PL-REG-48, PL-GEN-08 */
 static void test_addresses_and_bits(void)
 {
     static const uint8_t pairs[][2] = {
