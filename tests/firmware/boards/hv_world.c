@@ -107,6 +107,7 @@ static uint16_t spi_frame(void *ctx, unsigned bus, const emu_spi_frame *f)
     sim_pl_set_spi_clock(&hv.stack, f->hz);
     sim_pl_set_spi_mode(&hv.stack, f->mode);
     answer = sim_pl_spi_byte(&hv.stack, (uint8_t)f->value, NULL);
+    hv.misframed += f->bits != 8 || f->lsb_first;
     hv.packet++;
     if (hv.stop_in_packet && hv.packet == 2) {
         emu_stop_here(hv.e);

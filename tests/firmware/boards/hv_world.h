@@ -34,6 +34,7 @@ typedef struct hv_world {
     int miso;                     /* -1 = the stack answers, otherwise every byte is this */
     bool stop_in_packet;          /* stop the emulator at the next byte of a packet */
     unsigned packet;              /* bytes since chip select fell */
+    unsigned misframed;           /* frames other than 8 bits, highest first */
     char said[4096];
     unsigned length;
     const char *type;

@@ -202,6 +202,19 @@ static void test_console_under_fire(void)
 
 /* ---- the stack's bus ---------------------------------------------------------------------------------- */
 
+/* Bytes in mode 1, highest bit first, without pauses: all else is in the book of the strict stack. */
+/* proves: PL-SPI-01, PL-SPI-02, PL-AMB-20 */
+static void test_frames_on_the_wire(void)
+{
+    uint64_t bytes;
+    hv_up();
+    bytes = sim_pl_bus_fault(&hv.stack)->bytes;
+    hv_run(500);
+    TEST_ASSERT_TRUE(sim_pl_bus_fault(&hv.stack)->bytes - bytes > 5u * 300u); /* 16 devices, 5 scans */
+    TEST_ASSERT_EQUAL_UINT(0, hv.misframed);
+    hv_clean();
+}
+
 /* MISO stuck: outputs off after the time-out of communication and 1.25 periods. */
 static void stuck(int level)
 {
@@ -314,6 +327,7 @@ int main(void)
     RUN_TEST(test_storm_on_alert);
     RUN_TEST(test_storm_on_drdy);
     RUN_TEST(test_console_under_fire);
+    RUN_TEST(test_frames_on_the_wire);
     RUN_TEST(test_miso_stuck_low);
     RUN_TEST(test_miso_stuck_high);
     RUN_TEST(test_spi_overrun);
