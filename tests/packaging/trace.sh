@@ -50,10 +50,26 @@ expect 0 '^PL-CRC +3 +2 +0 +1 +1 +1 +1$' 'a sound tree is green, both sides of a
 expect 0 '^PL-HW +1 +0 +0 +1 ' 'a board row is not testable here'
 expect 0 'unit/a/test_a.c:1: test_a' 'the tests of a row are named' --where PL-CRC-01
 rm "$tree/tests/conformance/pl536_a/test_b.c"
-expect 0 '^PL-CRC-01 \[SD\] simulator side not proven' 'a row proven on one side only is listed' --list
+expect 1 '^PL-CRC-01 \[SD\] simulator side not proven' 'a row proven on one side only is listed' --list
+expect 1 'error: PL-CRC-01 \[SD\] simulator side not proven' 'and an error'
+echo "PL-CRC-01 simulator: it cannot" >>"$tree/docs/requirements/not-testable.txt"
+expect 0 '^PL-CRC +3 +2 +0 +1 +1 +0 +1$' 'unless a line of reason excuses that side'
+fresh
+echo "PL-CRC-01 driver: it cannot" >>"$tree/docs/requirements/not-testable.txt"
+expect 1 'proves PL-CRC-01, whose driver side' 'a side that is proven cannot be excused'
+sed -i '/PL-CRC-01,/s/PL-CRC-01,//' "$tree/tests/unit/a/test_a.c"
+expect 0 '^PL-CRC +3 +2 +0 +1 +1 +1 +0$' 'one that is not can'
+echo "PL-CRC-01 driver: again" >>"$tree/docs/requirements/not-testable.txt"
+expect 1 'PL-CRC-01 is listed twice' 'a side excused twice'
+fresh
+echo "PL-CRC-01 simulator:" >>"$tree/docs/requirements/not-testable.txt"
+expect 1 'PL-CRC-01 has no reason' 'a side excused without a reason'
+fresh
+echo "PL-CRC-02 simulator: no" >>"$tree/docs/requirements/not-testable.txt"
+expect 1 'PL-CRC-02 has one side only' 'a side of a row that has one'
 fresh
 mv "$tree/tests/conformance/pl536_a" "$tree/tests/conformance/x0_driver"
-expect 0 '^PL-CRC-01 \[SD\] simulator side not proven' 'the tests of a driver are not the simulator side' --list
+expect 1 '^PL-CRC-01 \[SD\] simulator side not proven' 'the tests of a driver are not the simulator side' --list
 mv "$tree/tests/conformance/x0_driver" "$tree/tests/conformance/x0_sim_a"
 expect 0 '^PL-CRC +3 +2 +0 +1 +1 +1 +1$' 'those of either model are'
 
@@ -61,6 +77,7 @@ fresh
 sed -i 's/PL-CRC-02/PL-CRC-99/' "$tree/tests/unit/a/test_a.c"
 expect 1 'unknown ID PL-CRC-99' 'an unknown ID in a test'
 expect 1 '^PL-CRC-02 \[D\] not proven' 'the row it left is unproven' --list
+expect 1 'error: PL-CRC-02 \[D\] not proven' 'and that is an error'
 
 fresh
 sed -i 's/PL-CRC-02/PL-CRC-03/' "$tree/tests/unit/a/test_a.c"
@@ -84,14 +101,14 @@ expect 1 'not-testable.txt:2: unknown ID PL-CRC-77' 'an unknown ID among the not
 
 fresh
 echo '# bq_test(a SOURCES test_a.c)' >"$tree/tests/unit/a/CMakeLists.txt"
-expect 0 'test_a.c: not compiled' 'a file that nobody compiles is named'
-expect 0 '^PL-CRC-02 \[D\] not proven' 'and its claims do not count' --list
+expect 1 'test_a.c: not compiled' 'a file that nobody compiles is named'
+expect 1 '^PL-CRC-02 \[D\] not proven' 'and its claims do not count' --list
 
 fresh
 echo 'file(GLOB all test_*.c)' >"$tree/tests/unit/a/CMakeLists.txt"
 expect 0 '^PL-CRC +3 +2 ' 'a file that a GLOB covers counts'
 echo 'file(GLOB all other_*.c)' >"$tree/tests/unit/a/CMakeLists.txt"
-expect 0 'test_a.c: not compiled' 'a file that no GLOB covers does not'
+expect 1 'test_a.c: not compiled' 'a file that no GLOB covers does not'
 
 fresh
 sed -i 's/RUN_TEST(test_a)/return 0/' "$tree/tests/unit/a/test_a.c"
