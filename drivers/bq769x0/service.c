@@ -4,6 +4,7 @@
 
 #define OVERCURRENT (BQ769X0_STAT_SCD | BQ769X0_STAT_OCD)
 #define STRIKES_MAX 5u
+#define EDGE_MS 2u /* which scan meets a time of whole scans is no matter of microseconds */
 
 /* The bits whose release is under way: XREADY comes first and alone. */
 static uint8_t judged(const bq769x0 *d)
@@ -144,7 +145,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
         }
     }
     if (t->probation) {
-        if (d->now_ms - t->held_ms >= probation_ms(d)) {
+        if (d->now_ms - t->held_ms > probation_ms(d) + EDGE_MS) {
             if (release(d)) {
                 SEQ_TRY(4, x0_run(d, x0_job_reload));
                 d->data_ms = d->now_ms + 2000u + X0_SCAN_MS; /* X0-AMB-66 */
@@ -163,7 +164,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
         t->held_ms = d->now_ms;
         return BQ_OK;
     }
-    if (d->now_ms - t->held_ms >= quiet_ms(d)) {
+    if (d->now_ms - t->held_ms > quiet_ms(d) + EDGE_MS) {
         d->want[0] = d->stat & judged(d); /* exactly what was read as set (X0-BIT-09) */
         if (d->want[0] != 0u) {
             SEQ_TRY(6, x0_put(d, BQ769X0_SYS_STAT, 1));
