@@ -4,7 +4,7 @@
 #include "stm32_gpio.h"
 #include "stm32_i2c.h"
 
-#define HALF_BIT_US 4u   /* stm32_wait_us() waits up to one more: 100 kHz */
+#define HALF_BIT_US 5u   /* X0-SEQ-52 */
 #define RECOVERY_US 160u /* after this no further clock begins */
 
 static bool high(const stm32_i2c *i2c, unsigned pin)
@@ -17,10 +17,18 @@ bool stm32_i2c_lines_free(const stm32_i2c *i2c)
     return high(i2c, i2c->scl) && high(i2c, i2c->sda);
 }
 
-static void drive(const stm32_i2c *i2c, unsigned pin, bool level)
+/* Edges stand on a grid of half bits, whatever the code in between takes; `*edge` is the last one. */
+static void hold(uint32_t *edge)
+{
+    while (stm32_now_us() - *edge < HALF_BIT_US) {
+    }
+    *edge += HALF_BIT_US;
+}
+
+static void drive(const stm32_i2c *i2c, unsigned pin, bool level, uint32_t *edge)
 {
     stm32_pin_write(i2c->port, pin, level);
-    stm32_wait_us(HALF_BIT_US);
+    hold(edge);
 }
 
 static void set_mode(const stm32_i2c *i2c, uint32_t mode)
@@ -39,11 +47,13 @@ static bool in_time(uint32_t from)
 }
 
 /* SCL released; a slave may hold it, which costs time of the whole budget only. */
-static bool release_scl(const stm32_i2c *i2c, uint32_t from)
+static bool release_scl(const stm32_i2c *i2c, uint32_t from, uint32_t *edge)
 {
-    drive(i2c, i2c->scl, true);
+    stm32_pin_write(i2c->port, i2c->scl, true);
     while (!high(i2c, i2c->scl) && in_time(from)) {
+        *edge = stm32_now_us();
     }
+    hold(edge);
     return high(i2c, i2c->scl);
 }
 
@@ -51,21 +61,21 @@ static bool release_scl(const stm32_i2c *i2c, uint32_t from)
  */
 bq_status stm32_i2c_free_lines(const stm32_i2c *i2c)
 {
-    uint32_t from = stm32_now_us();
+    uint32_t from = stm32_now_us(), edge = from;
     bool clocked;
     stm32_pin_write(i2c->port, i2c->scl, true);
     stm32_pin_write(i2c->port, i2c->sda, true);
     set_mode(i2c, 1u);
-    clocked = release_scl(i2c, from);
+    clocked = release_scl(i2c, from, &edge);
     for (unsigned n = 0; n < 9u && clocked && !high(i2c, i2c->sda) && in_time(from); n++) {
-        drive(i2c, i2c->scl, false);
-        clocked = release_scl(i2c, from);
+        drive(i2c, i2c->scl, false, &edge);
+        clocked = release_scl(i2c, from, &edge);
     }
     if (clocked) { /* STOP: SDA rises while SCL is high */
-        drive(i2c, i2c->scl, false);
-        drive(i2c, i2c->sda, false);
-        drive(i2c, i2c->scl, true);
-        drive(i2c, i2c->sda, true);
+        drive(i2c, i2c->scl, false, &edge);
+        drive(i2c, i2c->sda, false, &edge);
+        drive(i2c, i2c->scl, true, &edge);
+        drive(i2c, i2c->sda, true, &edge);
     }
     set_mode(i2c, 2u);
     return stm32_i2c_lines_free(i2c) ? BQ_OK : BQ_E_ARBITRATION;

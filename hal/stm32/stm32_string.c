@@ -45,6 +45,12 @@ void *memmove(void *to, const void *from, size_t n)
 void *memset(void *to, int value, size_t n)
 {
     unsigned char *t = to;
+    word whole = (unsigned char)value * 0x01010101u;
+    if (((uintptr_t)t & 3u) == 0u) {
+        for (; n >= 4u; n -= 4u, t += 4) {
+            *(word *)(void *)t = whole;
+        }
+    }
     while (n-- > 0u) {
         *t++ = (unsigned char)value;
     }

@@ -26,29 +26,27 @@ void stm32_wait_us(uint32_t us)
 
 /* Channel 1 compares, without an output (CCMR1 = 0 after reset). A comparison that lies in the past would
  * come an hour late, so the counter is looked at again after it is set. */
-static bool arm(uint32_t deadline)
+static void arm(stm32_time *time, uint32_t deadline)
 {
     stm32_tim_regs *t = STM32_TIM2;
     t->ccr1 = deadline;
     t->sr = ~STM32_TIM_SR_CC1IF;
     t->dier = STM32_TIM_DIER_CC1IE;
-    return (int32_t)(deadline - t->cnt) > 0;
+    if ((int32_t)(deadline - t->cnt) <= 0) {
+        stm32_time_event(time);
+    }
 }
 
 /* With interrupts masked a pending one still ends WFI; it is served when they are unmasked. So nothing can
  * come between the look at `event` and the sleep. */
 void stm32_time_sleep(stm32_time *time, uint32_t us)
 {
-    uint32_t deadline, mask;
+    uint32_t mask;
     if (us == 0u) {
         return;
     }
-    deadline = stm32_now_us() + (us > 0x7fffffffu ? 0x7fffffffu : us);
-    for (;;) {
-        mask = stm32_lock();
-        if (time->event || !arm(deadline)) {
-            break;
-        }
+    arm(time, stm32_now_us() + (us > 0x7fffffffu ? 0x7fffffffu : us));
+    while (mask = stm32_lock(), !time->event) {
         stm32_wfi();
         stm32_unlock_and_serve(mask);
     }

@@ -8,6 +8,7 @@
 #define INTERRUPTS                                                                                           \
     (STM32_I2C_CR1_TXIE | STM32_I2C_CR1_RXIE | STM32_I2C_CR1_NACKIE | STM32_I2C_CR1_STOPIE |                 \
      STM32_I2C_CR1_TCIE | STM32_I2C_CR1_ERRIE)
+#define ENDS (STM32_I2C_ISR_NACKF | STM32_I2C_ISR_TCR | STM32_I2C_ISR_TC | STM32_I2C_ISR_STOPF)
 #define CHUNK (0xffu << STM32_I2C_CR2_NBYTES_SHIFT | STM32_I2C_CR2_RELOAD | STM32_I2C_CR2_AUTOEND)
 
 /* PE low for three cycles of APB and more resets the state machine and releases the lines. */
@@ -134,6 +135,9 @@ void stm32_i2c_irq(stm32_i2c *i2c)
         return;
     }
     move_byte(i2c, isr);
+    if ((isr & ENDS) == 0u) {
+        return; /* nearly always: this costs a main loop that sleeps most */
+    }
     if ((isr & STM32_I2C_ISR_NACKF) != 0u) {
         take_nack(i2c);
     } else if ((isr & STM32_I2C_ISR_TCR) != 0u) {

@@ -13,9 +13,10 @@
  *         sleep until bq_firmware_step(&fw) us have passed or an interrupt has come
  *     }
  *
- * - One pass does one expensive thing at most: a pack step, or up to BQ_TELEMETRY_FRAMES frames of CAN, or
- * one row of the console. So a pass ends within 200 us on a Cortex-M0 at 48 MHz (15 cells) and on a Cortex-M4
- * at 168 MHz (192 cells), and no output, however long, delays the super-loop by more than one pass.
+ * - One pass does one expensive thing at most: the copy of a picture, or a pack step, or up to
+ * BQ_TELEMETRY_FRAMES frames of CAN, or one row of the console. So a pass ends within 200 us on a Cortex-M0
+ * at 48 MHz (15 cells) and on a Cortex-M4 at 168 MHz (192 cells), and no output, however long, delays the
+ * super-loop by more than one pass.
  * - The watchdog is fed only in a pass that began no later than 1.25 periods and BQ_FIRMWARE_SLACK_MS after
  *   the last pack step, and only when the clock has moved on since the last feeding. A stuck driver, a pack
  *   step that no longer comes, a caller that is always late and a clock that stands still end in a reset.

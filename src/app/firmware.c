@@ -189,7 +189,7 @@ static bool in_time(const bq_firmware *fw)
     return fw->now_ms - fw->step_ms <= period + period / 4u + BQ_FIRMWARE_SLACK_MS;
 }
 
-/* The hint; 0 after a pack step too: what is to be told waits for the next pass. */
+/* The hint. A pass that copies a picture or steps the pack tells nothing: that waits for the next one. */
 static uint32_t run(bq_firmware *fw)
 {
     const bool healthy = in_time(fw);
@@ -202,7 +202,7 @@ static uint32_t run(bq_firmware *fw)
     if (healthy && in_time(fw)) {
         feed(fw);
     }
-    fw->busy = bq_app_get_counters(&fw->app)->steps != steps;
+    fw->busy = fw->app.copied || bq_app_get_counters(&fw->app)->steps != steps;
     return smaller(hint, look_us(fw));
 }
 
