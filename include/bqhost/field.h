@@ -41,6 +41,16 @@ typedef struct bq_field_table {
 #define BQ_FIELD(type, member, kind)                                                                         \
     {(uint16_t)offsetof(type, member), (uint8_t)sizeof(((type *)0)->member), (kind)}
 
+/** The field of an object, a negative one in two's complement. */
+uint32_t bq_field_load(const bq_field *f, const void *object);
+
+/** What would come back of a value after bq_field_store(): equal to it if the field can hold it. Knows no
+ *  BQ_FIELD_MAX_POINTS. */
+uint32_t bq_field_fit(const bq_field *f, uint32_t value);
+
+/** Writes the field of an object, and nothing else of it; bits beyond its size are lost. */
+void bq_field_store(const bq_field *f, void *object, uint32_t value);
+
 #ifdef __cplusplus
 }
 #endif

@@ -60,6 +60,10 @@ typedef enum bq_status {
 /** Name of a status for logs, for example "BQ_E_CRC"; never NULL; "BQ_E_?" for unknown values. */
 const char *bq_status_name(bq_status status);
 
+/** The same without what it begins with, "BQ_" with BQ_OK and BQ_PENDING, "BQ_E_" with all others: for
+ * programs to which 150 bytes matter. */
+const char *bq_status_word(bq_status status);
+
 #ifdef __cplusplus
 }
 #endif

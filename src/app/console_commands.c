@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which command a line is, and the commands of a row or two. */
+#include "bqhost/text.h"
 #include "console_internal.h"
 #include <string.h>
 
@@ -20,16 +21,16 @@ enum {
 };
 
 /* Each with its row of help. */
-static const char commands[] = "help: this list|"
-                               "version: last reset, crash|"
-                               "status: state, reason, measurements|"
-                               "cells: every cell and sensor|"
-                               "faults: every one since the start|"
-                               "counters: of loop and link|"
-                               "self-test: of the monitors, outputs off|"
-                               "balance: which cells bleed|"
-                               "balance on: allow it|"
-                               "balance off: forbid it|"
+static const char commands[] = "help: this list\0"
+                               "version: last reset, crash\0"
+                               "status: state, reason, measurements\0"
+                               "cells: every cell and sensor\0"
+                               "faults: every one since the start\0"
+                               "counters: of loop and link\0"
+                               "self-test: of the monitors, outputs off\0"
+                               "balance: which cells bleed\0"
+                               "balance on: allow it\0"
+                               "balance off: forbid it\0"
                                "reset: outputs off, then restart";
 
 /* ---- taking the line apart ------------------------------------------------------------------------ */
@@ -63,7 +64,7 @@ uint8_t console_parse(bq_console *c)
 
     tidy(c->line);
     if (c->line[0] != '\0') {
-        while (n < (uint8_t)UNKNOWN - 1u && !is(c->line, console_word(commands, n))) {
+        while (n < (uint8_t)UNKNOWN - 1u && !is(c->line, bq_word(commands, n))) {
             n++;
         }
         n++;
@@ -85,14 +86,10 @@ static console_row only(bq_console *c, const char *what)
 
 static console_row help(bq_console *c)
 {
-    const char *row = console_word(commands, c->row++);
-
-    if (row == NULL) {
+    if (c->row >= (uint8_t)UNKNOWN - 1u) {
         return CONSOLE_DONE;
     }
-    while (*row != '|' && *row != '\0') {
-        console_char(c, *row++);
-    }
+    console_text(c, bq_word(commands, c->row++));
     return CONSOLE_ROW;
 }
 
@@ -131,7 +128,7 @@ static console_row balance(bq_console *c, bq_app *app)
     }
     {
         const int32_t v[] = {bq_app_input(app)->balance_off, bq_app_pack(app)->summary.balancing};
-        console_say(c, "%[allowed|forbidden], cells that bleed: %u", v);
+        console_say(c, "%[allowed|forbidden], cells that bleed: %0", v);
     }
     return CONSOLE_ROW;
 }

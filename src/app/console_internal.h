@@ -11,9 +11,9 @@ void console_char(bq_console *c, char what);
 void console_text(bq_console *c, const char *what);
 /*
  * Text with values, taken from `v` in turn:
- *   %u number        %x 4 hexadecimal digits   %X 8                %v millivolts: 3.700 V
- *   %i milliamperes  %c 25.1 C                 %t milliseconds: 12.3 s
- *   %p permille: 53.2 % (below 0: not valid)   %T since a time: 12.3 s
+ *   %0 number        %1, %3 signed, with so many decimals: 25.1, -3.700
+ *   %x 4 hexadecimal digits          %X 8
+ *   %t milliseconds as seconds: 12.3                    %T since a time
  *   %a an age when the picture was made: , 12 ms old (above INT32_MAX: , never measured)
  *   %E bq_status     %S bq_pack_state_id       %F bq_pack_fault    %H bq_pack_hold
  *   %[off|on]   the value chooses one of the words
@@ -22,8 +22,6 @@ void console_text(bq_console *c, const char *what);
  */
 void console_say(bq_console *c, const char *format, const int32_t *v);
 void console_end(bq_console *c); /* CR LF; the row is complete */
-/* The words of a list "a|b|c": where number n begins, NULL past the end. */
-const char *console_word(const char *list, uint32_t n);
 
 /* ---- console_edit.c: the line --------------------------------------------------------------------- */
 

@@ -40,12 +40,12 @@ static void cells_row(bq_console *c, const bq_app *app)
     const uint8_t module = s->cells[c->item].module;
     uint8_t bad = 0;
 
-    console_say(c, "cells %u:", &first);
+    console_say(c, "cells %0:", &first);
     for (unsigned n = 0; n < CELLS_A_ROW && c->item < s->cell_count && s->cells[c->item].module == module;
          n++) {
         const bq_cell_reading *r = &s->cells[c->item++];
         const int32_t mv = r->mv;
-        console_say(c, " %u", &mv);
+        console_say(c, " %0", &mv);
         bad |= doubt(c, r->quality);
         if (bq_mask_get(bq_app_action(app)->balance, c->item)) {
             console_char(c, 'b');
@@ -61,7 +61,7 @@ static void sensor_row(bq_console *c, const bq_app *app, uint16_t n)
     const int32_t v[] = {n + 1, r->dc};
 
     c->item++;
-    console_say(c, "sensor %u: %c", v);
+    console_say(c, "sensor %0: %1 C", v);
     tail(c, app, r->module, doubt(c, r->quality));
 }
 
@@ -95,7 +95,7 @@ console_row console_bleeding(bq_console *c, const bq_app *app)
         c->item++;
         if (bq_mask_get(bq_app_action(app)->balance, c->item)) {
             const int32_t v[] = {shown == 0u, c->item};
-            console_say(c, "%[|cells] %u", v);
+            console_say(c, "%[|cells] %0", v);
             shown++;
         }
     }
@@ -112,14 +112,14 @@ static const char *unit(bq_pack_fault f, int32_t value)
     const uint32_t bit = BIT(f);
 
     if ((bit & (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CELL_UV) | BIT(BQ_FAULT_IMBALANCE))) != 0u) {
-        return ", %v";
+        return ", %3 V";
     }
     if ((bit & (BIT(BQ_FAULT_OVERTEMP) | BIT(BQ_FAULT_UNDERTEMP))) != 0u) {
-        return ", %c";
+        return ", %1 C";
     }
     if ((bit & (BIT(BQ_FAULT_COMM_LOSS) | BIT(BQ_FAULT_NO_READING) | BIT(BQ_FAULT_SENSOR) |
                 BIT(BQ_FAULT_CONTACTOR))) != 0u) {
-        return ", %u ms";
+        return ", %0 ms";
     }
     return value < 0 ? ", %E" : ", flags %x";
 }
@@ -131,10 +131,10 @@ static void fault_row(bq_console *c, bq_pack_fault f, const bq_pack_fault_record
 
     console_say(c, "%F: %[cleared|active], held by %H%(, device )%(, cell )%(, sensor )", v);
     if (r->wire >= 0) {
-        console_say(c, ", wire %u", &v[6]);
+        console_say(c, ", wire %0", &v[6]);
     }
     console_say(c, unit(f, r->value), &r->value);
-    console_say(c, ", at %t, times %u", end);
+    console_say(c, ", at %t s, times %0", end);
 }
 
 console_row console_faults(bq_console *c, const bq_app *app)
@@ -166,7 +166,7 @@ console_row console_counters(bq_console *c, const bq_app *app)
         "%[periods|steps|overruns|late scans|scan failures|sample failures|apply failures|bring-ups|"
         "bring-up failures|self-test failures|line failures|ammeter failures|"
         "transfers|bytes|scans|retries|crc errors|no answers|implausible|bus errors|write errors|"
-        "recoveries] %u";
+        "recoveries] %0";
     const uint16_t loop = (uint16_t)(sizeof(bq_app_counters) / sizeof(uint32_t));
     const uint16_t link = (uint16_t)(sizeof(bq_link_stats) / sizeof(uint32_t));
     const void *from = bq_app_get_counters(app);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The commands status and version: one row for each subject. */
+#include "bqhost/field.h"
+#include "bqhost/text.h"
 #include "bqhost/version.h"
 #include "console_internal.h"
-#include "settings_internal.h"
 #include <string.h>
 
 #define MOST_VALUES 5u
@@ -22,32 +23,33 @@ static const bq_field fields[] = {
     /* 14 sensors   */ U(pack.summary.temp_min), S(pack.summary.temp_min_dc), U(pack.summary.temp_min),
                        S(pack.summary.temp_max_dc), U(pack.summary.temp_max),
     /* 19 current   */ U(sample.current_valid), S(sample.current_ma), U(sample.current_age_ms),
-    /* 22 charge    */ S(pack.summary.soc_permille),
-    /* 23 balance   */ U(input.balance_off), U(pack.summary.balancing),
-    /* 25 monitor   */ U(input.monitor), U(input.monitor) /* modules */, S(input.monitor_status),
-    /* 28 self-test */ U(input.self_test), S(input.self_test_status),
+    /* 22 charge    */ U(pack.soc.valid), S(pack.summary.soc_permille),
+    /* 24 balance   */ U(input.balance_off), U(pack.summary.balancing),
+    /* 26 monitor   */ U(input.monitor), U(input.monitor) /* modules */, S(input.monitor_status),
+    /* 29 self-test */ U(input.self_test), S(input.self_test_status),
                        U(now_ms), U(now_ms), U(now_ms)};
 /* clang-format on */
 
 /* Where in `fields` a row begins. */
-static const uint8_t first[] = {0, 2, 5, 5, 6, 9, 14, 19, 22, 23, 25, 28};
+static const uint8_t first[] = {0, 2, 5, 5, 6, 9, 14, 19, 22, 24, 26, 29};
 
-static const char *const formats[] = {
-    "state     %S for %T",
-    "outputs   charge %[off|on], discharge %[off|on], contactor %[off|on]",
-    "request   %[off|on|sleep]",
-    "cause     %F, held by %H",
-    "pack      %v, %[not complete|complete]%a",
-    "cells     %?%v (%u) to %v (%u)",
-    "sensors   %?%c (%u) to %c (%u)",
-    "current   %?%i%a",
-    "charge    %p",
-    "balance   %[allowed|forbidden], cells %u",
-    "monitor   %[down|up|failed], modules %u, %E",
-    "self-test %[not done|passed|failed], %E",
-    "can       %[active|passive|bus-off|none]",
-    "uptime    %t",
-};
+/* clang-format off */
+static const char formats[] =
+    "state     %S for %T s\0"
+    "outputs   charge %[off|on], discharge %[off|on], contactor %[off|on]\0"
+    "request   %[off|on|sleep]\0"
+    "cause     %F, held by %H\0"
+    "pack      %3 V, %[not complete|complete]%a\0"
+    "cells     %?%3 V (%0) to %3 V (%0)\0"
+    "sensors   %?%1 C (%0) to %1 C (%0)\0"
+    "current   %?%3 A%a\0"
+    "charge    %?%1 %\0"
+    "balance   %[allowed|forbidden], cells %0\0"
+    "monitor   %[down|up|failed], modules %0, %E\0"
+    "self-test %[not done|passed|failed], %E\0"
+    "can       %[active|passive|bus-off|none]\0"
+    "uptime    %t s";
+/* clang-format on */
 
 enum { ROW_CAUSE = 3, ROW_PACK = 4, ROW_MONITOR = 10, ROW_CAN = 12, ROWS = 14 };
 
@@ -57,8 +59,7 @@ static const char *look(const bq_app *app, unsigned row, int32_t *v)
     const bq_pack *p = bq_app_pack(app);
 
     for (unsigned i = 0; i < MOST_VALUES; i++) {
-        const bq_field *f = &fields[first[row] + i];
-        v[i] = (int32_t)settings_load_field(f, (const unsigned char *)app + f->offset);
+        v[i] = (int32_t)bq_field_load(&fields[first[row] + i], app);
     }
     if (row == ROW_CAUSE) {
         const bq_pack_fault f = bq_pack_cause(p);
@@ -72,7 +73,7 @@ static const char *look(const bq_app *app, unsigned row, int32_t *v)
     } else if (row == ROW_MONITOR) {
         v[1] = bq_app_modules_found(app);
     }
-    return formats[row];
+    return bq_word(formats, row);
 }
 
 static void refused(bq_console *c, const bq_console_target *t)
@@ -97,7 +98,7 @@ console_row console_status(bq_console *c, const bq_console_target *t)
         if (row == ROW_CAN) {
             v[0] = t->can != NULL && t->can->ops != NULL ? (int32_t)t->can->ops->state(t->can->ctx) : 3;
         }
-        console_say(c, formats[row], v);
+        console_say(c, bq_word(formats, row), v);
     } else if (t->app != NULL) {
         console_say(c, look(t->app, row, v), v);
     } else {
@@ -120,7 +121,7 @@ static void crash(bq_console *c, const bq_crash *k)
     const int32_t v[] = {(int32_t)k->kind, (int32_t)k->pc, (int32_t)k->lr, (int32_t)k->sp,
                          (int32_t)k->uptime_ms};
 
-    console_say(c, "crash     kind %u pc %X lr %X sp %X after %t", v);
+    console_say(c, "crash     kind %0 pc %X lr %X sp %X after %t s", v);
 }
 
 static void registers(bq_console *c, const bq_crash *k)
@@ -138,7 +139,7 @@ static void start(bq_console *c, const bq_mcu *m)
 
     console_say(c,
                 "reset by  %[unknown|power-on|brown-out|pin|software|watchdog|crash]%[|, crystal failed], "
-                "image %X %[damaged|ok], stack left %u",
+                "image %X %[damaged|ok], stack left %0",
                 v);
 }
 

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #define END_OF_ROW 2u
-#define NOT_VALID "not valid"
 
 void console_char(bq_console *c, char what)
 {
@@ -44,15 +43,6 @@ static void digits(bq_console *c, uint32_t value, unsigned decimals)
     }
 }
 
-static void quantity(bq_console *c, int32_t value, unsigned decimals, const char *unit)
-{
-    if (value < 0) {
-        console_char(c, '-');
-    }
-    digits(c, value < 0 ? 0u - (uint32_t)value : (uint32_t)value, decimals);
-    console_text(c, unit);
-}
-
 static void hex(bq_console *c, uint32_t value, unsigned n)
 {
     while (n > 0u) {
@@ -73,94 +63,59 @@ static void age(bq_console *c, uint32_t ms)
     console_text(c, " ms old");
 }
 
-static bool ends(char what)
-{
-    return what == '|' || what == ']' || what == '\0';
-}
-
-const char *console_word(const char *list, uint32_t n)
-{
-    for (; n > 0u; n--) {
-        while (!ends(*list)) {
-            list++;
-        }
-        if (*list++ != '|') {
-            return NULL;
-        }
-    }
-    return list;
-}
-
-static void choose(bq_console *c, const char *list, uint32_t n)
-{
-    const char *word = console_word(list, n);
-
-    while (word != NULL && !ends(*word)) {
-        console_char(c, *word++);
-    }
-}
-
 static void one(bq_console *c, char code, int32_t value)
 {
+    unsigned decimals = (unsigned)(code - '0');
+
     switch (code) {
-    case 'u':
-        digits(c, (uint32_t)value, 0);
-        break;
     case 'x':
         hex(c, (uint32_t)value, 4);
-        break;
+        return;
     case 'X':
         hex(c, (uint32_t)value, 8);
-        break;
-    case 'v':
-        quantity(c, value, 3, " V");
-        break;
-    case 'i':
-        quantity(c, value, 3, " A");
-        break;
-    case 'c':
-        quantity(c, value, 1, " C");
-        break;
-    case 'p':
-        if (value < 0) {
-            console_text(c, NOT_VALID);
-        } else {
-            quantity(c, value, 1, " %");
-        }
-        break;
+        return;
+    case 'a':
+        age(c, (uint32_t)value);
+        return;
+    case 'E':
+        console_text(c, (uint32_t)value > 1u ? "BQ_E_" : "BQ_");
+        console_text(c, bq_status_word((bq_status)value));
+        return;
+    case 'S':
+        console_text(c, bq_pack_state_name((bq_pack_state_id)value));
+        return;
+    case 'F':
+        console_text(c, bq_pack_fault_name((bq_pack_fault)value));
+        return;
+    case 'H':
+        console_text(c, bq_pack_hold_name((bq_pack_hold)value));
+        return;
     case 'T':
         value = (int32_t)(c->now_ms - (uint32_t)value);
         /* fall through */
     case 't':
-        digits(c, (uint32_t)value / 100u, 1);
-        console_text(c, " s");
-        break;
-    case 'a':
-        age(c, (uint32_t)value);
-        break;
-    case 'E':
-        console_text(c, bq_status_name((bq_status)value));
-        break;
-    case 'S':
-        console_text(c, bq_pack_state_name((bq_pack_state_id)value));
-        break;
-    case 'F':
-        console_text(c, bq_pack_fault_name((bq_pack_fault)value));
+        value = (int32_t)((uint32_t)value / 100u);
+        decimals = 1;
         break;
     default:
-        console_text(c, bq_pack_hold_name((bq_pack_hold)value));
+        if (decimals != 0u && value < 0) {
+            console_char(c, '-');
+            value = (int32_t)(0u - (uint32_t)value);
+        }
         break;
     }
+    digits(c, (uint32_t)value, decimals);
 }
 
-/* Skips to behind `end`, copying if asked to. */
-static const char *until(bq_console *c, const char *at, char end, bool copy)
+/* The n-th of the words up to `end`; returns what follows them. */
+static const char *choose(bq_console *c, const char *at, char end, uint32_t n)
 {
-    while (*at != end) {
-        if (copy) {
+    for (; *at != end; at++) {
+        if (*at == '|') {
+            n--;
+        } else if (n == 0u) {
             console_char(c, *at);
         }
-        at++;
     }
     return at + 1;
 }
@@ -168,24 +123,23 @@ static const char *until(bq_console *c, const char *at, char end, bool copy)
 void console_say(bq_console *c, const char *format, const int32_t *v)
 {
     while (*format != '\0') {
-        const char code = format[0] == '%' ? format[1] : '\0';
-        if (code == '\0') {
-            console_char(c, *format++);
+        char code = *format++;
+        if (code != '%' || *format == '\0') {
+            console_char(c, code);
             continue;
         }
-        format += 2;
+        code = *format++;
         if (code == '[') {
-            choose(c, format, (uint32_t)*v);
-            format = until(c, format, ']', false);
+            format = choose(c, format, ']', (uint32_t)*v);
         } else if (code == '(') {
-            format = until(c, format, ')', *v != 0);
+            format = choose(c, format, ')', *v == 0);
             if (*v != 0) {
-                one(c, 'u', *v);
+                one(c, '0', *v);
             }
         } else if (code != '?') {
             one(c, code, *v);
         } else if (*v == 0) {
-            format = NOT_VALID;
+            format = "not valid";
         }
         v++;
     }

@@ -154,11 +154,11 @@ bq_status settings_newest(const bq_nvm *nvm, settings_record *newest)
 static bq_status read_values(const bq_settings *s, const bq_nvm *nvm, uint8_t sector, bool store)
 {
     settings_walk w = settings_begin(s);
-    unsigned char *at = NULL;
+    void *object = NULL;
     uint32_t offset = SETTINGS_HEAD * 4u;
-    const bq_field *f = settings_next(&w, &at);
+    const bq_field *f = settings_next(&w, &object);
 
-    for (; f != NULL; f = settings_next(&w, &at)) {
+    for (; f != NULL; f = settings_next(&w, &object)) {
         uint8_t word[4];
         const bq_status status = nvm->ops->read(nvm->ctx, sector, offset, word, sizeof word);
         if (status != BQ_OK) {
@@ -166,7 +166,7 @@ static bq_status read_values(const bq_settings *s, const bq_nvm *nvm, uint8_t se
         }
         offset += 4u;
         if (store) {
-            settings_store_field(f, at, settings_get32(word));
+            bq_field_store(f, object, settings_get32(word));
         } else if (!settings_field_fits(f, settings_get32(word))) {
             return BQ_E_RANGE;
         }

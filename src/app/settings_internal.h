@@ -26,12 +26,9 @@ uint32_t settings_get32(const uint8_t *at);
 void settings_put32(uint8_t *at, uint32_t value);
 
 settings_walk settings_begin(const bq_settings *s);
-/* The next field and where it lies; NULL past the end. */
-const bq_field *settings_next(settings_walk *w, unsigned char **at);
-/* The field that lies at `at`, a negative one in two's complement. */
-uint32_t settings_load_field(const bq_field *f, const unsigned char *at);
+/* The next field and the object that has it; NULL past the end. */
+const bq_field *settings_next(settings_walk *w, void **object);
 bool settings_field_fits(const bq_field *f, uint32_t value);
-void settings_store_field(const bq_field *f, unsigned char *at, uint32_t value);
 
 /* Words of the whole record, even; above BQ_SETTINGS_MAX_WORDS: too many. */
 uint32_t settings_words(const bq_settings *s);

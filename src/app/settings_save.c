@@ -19,10 +19,10 @@ static maker begin(const bq_settings *s, uint32_t sequence)
 
 static uint32_t next_value(maker *m)
 {
-    unsigned char *at = NULL;
-    const bq_field *f = settings_next(&m->walk, &at);
+    void *object = NULL;
+    const bq_field *f = settings_next(&m->walk, &object);
 
-    return f != NULL ? settings_load_field(f, at) : UINT32_MAX;
+    return f != NULL ? bq_field_load(f, object) : UINT32_MAX;
 }
 
 static uint32_t next_word(maker *m)

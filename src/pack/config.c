@@ -1,189 +1,165 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Limits of the pack controller: defaults, and one table from which checking and access by name follow. */
+#include "bqhost/field.h"
 #include "bqhost/pack.h"
+#include "bqhost/text.h"
 #include <stddef.h>
 #include <string.h>
 
-typedef enum field_kind { FIELD_U8, FIELD_U16, FIELD_I16, FIELD_I32 } field_kind;
+/* Name, kind, lowest and highest value; those of four bytes are currents, their limits in A. */
+#define FIELDS(F)                                                                                            \
+    F(cells, BQ_FIELD_UNSIGNED, 1, BQ_PACK_MAX_CELLS)                                                        \
+    F(sensors, BQ_FIELD_UNSIGNED, 0, BQ_PACK_MAX_SENSORS)                                                    \
+    F(modules, BQ_FIELD_UNSIGNED, 1, BQ_PACK_MAX_MODULES)                                                    \
+    F(cell_ov_mv, BQ_FIELD_UNSIGNED, 1000, 4500)                                                             \
+    F(cell_ov_clear_mv, BQ_FIELD_UNSIGNED, 1000, 4500)                                                       \
+    F(cell_uv_mv, BQ_FIELD_UNSIGNED, 1000, 4500)                                                             \
+    F(cell_uv_clear_mv, BQ_FIELD_UNSIGNED, 1000, 4500)                                                       \
+    F(overtemp_dc, BQ_FIELD_SIGNED, -400, 1250)                                                              \
+    F(overtemp_clear_dc, BQ_FIELD_SIGNED, -400, 1250)                                                        \
+    F(undertemp_dc, BQ_FIELD_SIGNED, -400, 1250)                                                             \
+    F(undertemp_clear_dc, BQ_FIELD_SIGNED, -400, 1250)                                                       \
+    F(imbalance_mv, BQ_FIELD_UNSIGNED, 0, 4500)                                                              \
+    F(imbalance_clear_mv, BQ_FIELD_UNSIGNED, 0, 4500)                                                        \
+    F(charge_max_ma, BQ_FIELD_SIGNED, 0, 1000)                                                               \
+    F(discharge_max_ma, BQ_FIELD_SIGNED, 0, 1000)                                                            \
+    F(debounce_ms, BQ_FIELD_UNSIGNED, 0, 10000)                                                              \
+    F(recover_ms, BQ_FIELD_UNSIGNED, 100, 65535)                                                             \
+    F(comm_timeout_ms, BQ_FIELD_UNSIGNED, 20, 30000)                                                         \
+    F(balance_start_mv, BQ_FIELD_UNSIGNED, 0, 1000)                                                          \
+    F(balance_stop_mv, BQ_FIELD_UNSIGNED, 1, 1000)                                                           \
+    F(balance_min_cell_mv, BQ_FIELD_UNSIGNED, 1000, 4500)                                                    \
+    F(balance_max_temp_dc, BQ_FIELD_SIGNED, -400, 1250)                                                      \
+    F(balance_rest_ma, BQ_FIELD_SIGNED, 0, 1000)                                                             \
+    F(balance_rest_ms, BQ_FIELD_UNSIGNED, 0, 65535)                                                          \
+    F(balance_duty_percent, BQ_FIELD_UNSIGNED, 1, 100)                                                       \
+    F(balance_max_per_module, BQ_FIELD_UNSIGNED, 0, 255)
 
 typedef struct field {
-    const char *name;
-    uint16_t offset;
-    uint8_t kind; /* field_kind */
-    int32_t min, max;
+    bq_field f;
+    int16_t min;
+    uint16_t max;
 } field;
 
-#define FIELD(name, kind, min, max) {#name, (uint16_t)offsetof(bq_pack_config, name), (kind), (min), (max)}
+#define NUMBER(name, kind, min, max) N_##name,
+#define NAME(name, kind, min, max) #name "\0"
+#define ROW(name, kind, min, max) {BQ_FIELD(bq_pack_config, name, kind), (min), (max)},
 
-static const field fields[] = {
-    FIELD(cells, FIELD_U16, 1, (int32_t)BQ_PACK_MAX_CELLS),
-    FIELD(sensors, FIELD_U16, 0, (int32_t)BQ_PACK_MAX_SENSORS),
-    FIELD(modules, FIELD_U16, 1, (int32_t)BQ_PACK_MAX_MODULES),
-    FIELD(cell_ov_mv, FIELD_U16, 1000, 4500),
-    FIELD(cell_ov_clear_mv, FIELD_U16, 1000, 4500),
-    FIELD(cell_uv_mv, FIELD_U16, 1000, 4500),
-    FIELD(cell_uv_clear_mv, FIELD_U16, 1000, 4500),
-    FIELD(overtemp_dc, FIELD_I16, -400, 1250),
-    FIELD(overtemp_clear_dc, FIELD_I16, -400, 1250),
-    FIELD(undertemp_dc, FIELD_I16, -400, 1250),
-    FIELD(undertemp_clear_dc, FIELD_I16, -400, 1250),
-    FIELD(imbalance_mv, FIELD_U16, 0, 4500),
-    FIELD(imbalance_clear_mv, FIELD_U16, 0, 4500),
-    FIELD(charge_max_ma, FIELD_I32, 0, 1000000),
-    FIELD(discharge_max_ma, FIELD_I32, 0, 1000000),
-    FIELD(debounce_ms, FIELD_U16, 0, 10000),
-    FIELD(recover_ms, FIELD_U16, 100, 65535),
-    FIELD(comm_timeout_ms, FIELD_U16, 20, 30000),
-    FIELD(balance_start_mv, FIELD_U16, 0, 1000),
-    FIELD(balance_stop_mv, FIELD_U16, 1, 1000),
-    FIELD(balance_min_cell_mv, FIELD_U16, 1000, 4500),
-    FIELD(balance_max_temp_dc, FIELD_I16, -400, 1250),
-    FIELD(balance_rest_ma, FIELD_I32, 0, 1000000),
-    FIELD(balance_rest_ms, FIELD_U16, 0, 65535),
-    FIELD(balance_duty_percent, FIELD_U8, 1, 100),
-    FIELD(balance_max_per_module, FIELD_U8, 0, 255),
+enum { FIELDS(NUMBER) FIELD_COUNT, N_soc = FIELD_COUNT, NONE };
+static const char names[] = FIELDS(NAME) "soc";
+static const field fields[] = {FIELDS(ROW)};
+
+/* Fields that must be below another one; `wrong` is the one that is named. */
+static const struct order {
+    uint8_t below, above, wrong;
+} orders[] = {
+    {N_cell_ov_clear_mv, N_cell_ov_mv, N_cell_ov_clear_mv},
+    {N_cell_uv_mv, N_cell_uv_clear_mv, N_cell_uv_clear_mv},
+    {N_cell_uv_clear_mv, N_cell_ov_clear_mv, N_cell_uv_clear_mv},
+    {N_overtemp_clear_dc, N_overtemp_dc, N_overtemp_clear_dc},
+    {N_undertemp_dc, N_undertemp_clear_dc, N_undertemp_clear_dc},
+    {N_undertemp_clear_dc, N_overtemp_clear_dc, N_undertemp_clear_dc},
 };
 
-#define FIELD_COUNT (sizeof fields / sizeof fields[0])
-
-static int32_t load(const bq_pack_config *c, const field *f)
+static int32_t load(const bq_pack_config *c, unsigned n)
 {
-    const unsigned char *at = (const unsigned char *)c + f->offset;
-    uint8_t u8;
-    uint16_t u16;
-    int16_t i16;
-    int32_t i32;
-
-    switch (f->kind) {
-    case FIELD_U8:
-        memcpy(&u8, at, sizeof u8);
-        return u8;
-    case FIELD_U16:
-        memcpy(&u16, at, sizeof u16);
-        return u16;
-    case FIELD_I16:
-        memcpy(&i16, at, sizeof i16);
-        return i16;
-    default:
-        memcpy(&i32, at, sizeof i32);
-        return i32;
-    }
+    return (int32_t)bq_field_load(&fields[n].f, c);
 }
 
-/* The value has been checked against the field's range, which lies inside its type. */
-static void store(bq_pack_config *c, const field *f, int32_t value)
+static bool in_range(unsigned n, int32_t value)
 {
-    unsigned char *at = (unsigned char *)c + f->offset;
-    const uint8_t u8 = (uint8_t)value;
-    const uint16_t u16 = (uint16_t)value;
-    const int16_t i16 = (int16_t)value;
+    const int32_t unit = fields[n].f.size == 4u ? 1000 : 1;
 
-    switch (f->kind) {
-    case FIELD_U8:
-        memcpy(at, &u8, sizeof u8);
-        break;
-    case FIELD_U16:
-        memcpy(at, &u16, sizeof u16);
-        break;
-    case FIELD_I16:
-        memcpy(at, &i16, sizeof i16);
-        break;
-    default:
-        memcpy(at, &value, sizeof value);
-        break;
-    }
+    return value >= fields[n].min * unit && value <= fields[n].max * unit;
 }
 
-static const field *find(const char *name)
+static unsigned find(const char *name)
 {
-    for (size_t i = 0; i < FIELD_COUNT; i++) {
-        if (strcmp(fields[i].name, name) == 0) {
-            return &fields[i];
-        }
+    unsigned n = 0;
+
+    while (n < FIELD_COUNT && strcmp(bq_word(names, n), name) != 0) {
+        n++;
     }
-    return NULL;
+    return n;
 }
 
 const char *bq_pack_config_field(uint16_t n)
 {
-    return n < FIELD_COUNT ? fields[n].name : NULL;
+    return n < FIELD_COUNT ? bq_word(names, n) : NULL;
 }
 
 bq_status bq_pack_config_set(bq_pack_config *config, const char *name, int32_t value)
 {
-    const field *f = config != NULL && name != NULL ? find(name) : NULL;
+    const unsigned n = config != NULL && name != NULL ? find(name) : FIELD_COUNT;
 
-    if (f == NULL) {
+    if (n == FIELD_COUNT) {
         return BQ_E_ARG;
     }
-    if (value < f->min || value > f->max) {
+    if (!in_range(n, value)) {
         return BQ_E_RANGE;
     }
-    store(config, f, value);
+    bq_field_store(&fields[n].f, config, (uint32_t)value);
     return BQ_OK;
 }
 
 bq_status bq_pack_config_get(const bq_pack_config *config, const char *name, int32_t *value)
 {
-    const field *f = config != NULL && name != NULL && value != NULL ? find(name) : NULL;
+    const unsigned n = config != NULL && name != NULL && value != NULL ? find(name) : FIELD_COUNT;
 
-    if (f == NULL) {
+    if (n == FIELD_COUNT) {
         return BQ_E_ARG;
     }
-    *value = load(config, f);
+    *value = load(config, n);
     return BQ_OK;
 }
 
-/* Name of the first field that contradicts another one, or NULL. */
-static const char *contradiction(const bq_pack_config *c)
+static unsigned out_of_range(const bq_pack_config *c)
+{
+    for (unsigned n = 0; n < FIELD_COUNT; n++) {
+        if (!in_range(n, load(c, n))) {
+            return n;
+        }
+    }
+    return NONE;
+}
+
+static unsigned contradiction(const bq_pack_config *c)
 {
     if (c->modules > c->cells) {
-        return "modules";
+        return N_modules;
     }
-    if (c->cell_ov_clear_mv >= c->cell_ov_mv) {
-        return "cell_ov_clear_mv";
-    }
-    if (c->cell_uv_clear_mv <= c->cell_uv_mv || c->cell_uv_clear_mv >= c->cell_ov_clear_mv) {
-        return "cell_uv_clear_mv";
-    }
-    if (c->overtemp_clear_dc >= c->overtemp_dc) {
-        return "overtemp_clear_dc";
-    }
-    if (c->undertemp_clear_dc <= c->undertemp_dc || c->undertemp_clear_dc >= c->overtemp_clear_dc) {
-        return "undertemp_clear_dc";
+    for (unsigned i = 0; i < sizeof orders / sizeof orders[0]; i++) {
+        if (load(c, orders[i].below) >= load(c, orders[i].above)) {
+            return orders[i].wrong;
+        }
     }
     /* both 0, or a release below the limit */
     if (c->imbalance_mv == 0u ? c->imbalance_clear_mv != 0u
                               : c->imbalance_clear_mv == 0u || c->imbalance_clear_mv >= c->imbalance_mv) {
-        return "imbalance_clear_mv";
+        return N_imbalance_clear_mv;
     }
     if (c->balance_start_mv != 0u && c->balance_stop_mv > c->balance_start_mv) {
-        return "balance_stop_mv";
+        return N_balance_stop_mv;
     }
-    return bq_soc_config_ok(&c->soc) ? NULL : "soc";
+    return bq_soc_config_ok(&c->soc) ? NONE : N_soc;
 }
 
 bq_status bq_pack_config_validate(const bq_pack_config *config, const char **field_name)
 {
-    const char *wrong = NULL;
-    bq_status status = BQ_OK;
+    unsigned wrong = NONE;
+    bq_status status = BQ_E_ARG;
 
-    if (config == NULL) {
-        status = BQ_E_ARG;
-    }
-    for (size_t i = 0; status == BQ_OK && i < FIELD_COUNT; i++) {
-        const int32_t value = load(config, &fields[i]);
-        if (value < fields[i].min || value > fields[i].max) {
-            wrong = fields[i].name;
-            status = BQ_E_RANGE;
+    if (config != NULL) {
+        status = BQ_E_RANGE;
+        wrong = out_of_range(config);
+        if (wrong == NONE) {
+            status = BQ_E_CONFIG;
+            wrong = contradiction(config);
         }
-    }
-    if (status == BQ_OK) {
-        wrong = contradiction(config);
-        status = wrong != NULL ? BQ_E_CONFIG : BQ_OK;
+        status = wrong != NONE ? status : BQ_OK;
     }
     if (field_name != NULL) {
-        *field_name = wrong;
+        *field_name = wrong != NONE ? bq_word(names, wrong) : NULL;
     }
     return status;
 }

@@ -1,27 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The faults: their names, what they forbid, their order, and the way each becomes active and clears. */
+#include "bqhost/text.h"
 #include "pack_internal.h"
 
-static const char *const names[BQ_FAULT_COUNT] = {
-    [BQ_FAULT_CELL_OV] = "cell_ov",
-    [BQ_FAULT_CELL_UV] = "cell_uv",
-    [BQ_FAULT_OVERTEMP] = "overtemp",
-    [BQ_FAULT_UNDERTEMP] = "undertemp",
-    [BQ_FAULT_IMBALANCE] = "imbalance",
-    [BQ_FAULT_COMM_LOSS] = "comm_loss",
-    [BQ_FAULT_CHIP] = "chip",
-    [BQ_FAULT_CHIP_CELL_OV] = "chip_cell_ov",
-    [BQ_FAULT_CHIP_CELL_UV] = "chip_cell_uv",
-    [BQ_FAULT_CHIP_OVERTEMP] = "chip_overtemp",
-    [BQ_FAULT_OPEN_WIRE] = "open_wire",
-    [BQ_FAULT_SENSOR] = "sensor",
-    [BQ_FAULT_SELF_TEST] = "self_test",
-    [BQ_FAULT_CONFIG] = "config",
-    [BQ_FAULT_CONTACTOR] = "contactor",
-    [BQ_FAULT_NO_READING] = "no_reading",
-    [BQ_FAULT_OVERCURRENT] = "overcurrent",
-    [BQ_FAULT_CHARGE_CURRENT] = "charge_overcurrent",
-};
+/* In the order of bq_pack_fault. */
+static const char names[] = "cell_ov\0cell_uv\0overtemp\0undertemp\0imbalance\0comm_loss\0"
+                            "chip\0chip_cell_ov\0chip_cell_uv\0chip_overtemp\0open_wire\0sensor\0"
+                            "self_test\0config\0contactor\0no_reading\0overcurrent\0"
+                            "charge_overcurrent\0?";
 
 /* Shown first: loss of protection, then hazards of the cells, then loss of information. */
 static const uint8_t order[BQ_FAULT_COUNT] = {
@@ -43,7 +29,7 @@ static const uint8_t order[BQ_FAULT_COUNT] = {
 
 const char *bq_pack_fault_name(bq_pack_fault fault)
 {
-    return (unsigned)fault < BQ_FAULT_COUNT ? names[fault] : "?";
+    return bq_word(names, (unsigned)fault < BQ_FAULT_COUNT ? (unsigned)fault : BQ_FAULT_COUNT);
 }
 
 bool bq_pack_fault_stops_charge(bq_pack_fault fault)

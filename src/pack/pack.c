@@ -1,20 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The pack controller's step: look, judge, change state, decide. */
+#include "bqhost/text.h"
 #include "pack_internal.h"
 #include <string.h>
 
 const char *bq_pack_state_name(bq_pack_state_id state)
 {
-    static const char *const names[] = {"init", "self-test", "standby", "on", "fault", "sleep"};
+    const unsigned last = BQ_PACK_SLEEP;
 
-    return (unsigned)state < sizeof names / sizeof names[0] ? names[state] : "?";
+    return bq_word("init\0self-test\0standby\0on\0fault\0sleep\0?",
+                   (unsigned)state <= last ? (unsigned)state : last + 1u);
 }
 
 const char *bq_pack_hold_name(bq_pack_hold hold)
 {
-    static const char *const names[] = {"none", "condition", "hysteresis", "unknown", "request", "time"};
+    const unsigned last = BQ_HOLD_TIME;
 
-    return (unsigned)hold < sizeof names / sizeof names[0] ? names[hold] : "?";
+    return bq_word("none\0condition\0hysteresis\0unknown\0request\0time\0?",
+                   (unsigned)hold <= last ? (unsigned)hold : last + 1u);
 }
 
 void bq_pack_log(bq_pack *p, uint32_t now_ms, bq_pack_event_kind kind, uint8_t code, uint16_t where)

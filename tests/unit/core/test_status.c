@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bqhost/status.h"
 #include "unity.h"
+#include <string.h>
 
 void setUp(void)
 {
@@ -12,7 +13,11 @@ void tearDown(void)
 
 static void test_every_status_has_its_own_name(void)
 {
-#define NAMED(s) TEST_ASSERT_EQUAL_STRING(#s, bq_status_name(s))
+#define NAMED(s)                                                                                             \
+    do {                                                                                                     \
+        TEST_ASSERT_EQUAL_STRING(#s, bq_status_name(s));                                                     \
+        TEST_ASSERT_EQUAL_STRING(#s + ((s) < 0 ? strlen("BQ_E_") : strlen("BQ_")), bq_status_word(s));       \
+    } while (0)
     NAMED(BQ_OK);
     NAMED(BQ_PENDING);
     NAMED(BQ_E_ARG);
@@ -54,6 +59,8 @@ static void test_unknown_values_have_a_name_too(void)
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-42));
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)2));
     TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-128));
+    TEST_ASSERT_EQUAL_STRING("?", bq_status_word((bq_status)-5));
+    TEST_ASSERT_EQUAL_STRING("?", bq_status_word((bq_status)2));
     if (sizeof(bq_status) >
         1u) { /* a compiler may give the type a single byte, as Arm's rules for bare metal do */
         TEST_ASSERT_EQUAL_STRING("BQ_E_?", bq_status_name((bq_status)-2147483647));
