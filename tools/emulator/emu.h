@@ -97,6 +97,12 @@ void emu_set_lsi_hz(emu *e, uint32_t hz);
  * The chip starts again at once with cause power, `off_ns` later.
  */
 void emu_lose_power_at_flash_op(emu *e, unsigned n, uint32_t seed, uint64_t off_ns);
+/**
+ * For images that wait for the flash in RAM, where the core does not stall: a read that sees it busy takes this
+ * long, but not beyond the next event, instead of one cycle. Initially 0 = one cycle. The wait costs the PC
+ * accordingly less; code that counts its turns, and not the time, sees fewer of them. Only F4.
+ */
+void emu_set_flash_poll_ns(emu *e, uint64_t ns);
 /** Flash operations begun since emu_create(). */
 uint32_t emu_flash_ops(const emu *e);
 

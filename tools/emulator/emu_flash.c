@@ -98,6 +98,27 @@ uint64_t flash_next(const emu_periph *p)
     return s->busy_ns != 0 ? s->busy_ns : EMU_NEVER;
 }
 
+void flash_polled(emu_periph *p)
+{
+    emu *e = p->e;
+    uint64_t now = emu_now(e), next;
+
+    if (e->poll_ns == 0 || !e->running) {
+        return;
+    }
+    next = emu_next_event(e);
+    next = next < now + e->poll_ns ? next : now + e->poll_ns;
+    if (next > now) {
+        e->cycle = emu_cycle_of(e, next);
+        emu_kick(e);
+    }
+}
+
+void emu_set_flash_poll_ns(emu *e, uint64_t ns)
+{
+    e->poll_ns = ns;
+}
+
 void flash_abort(emu_periph *p)
 {
     flash *s = p->state;

@@ -24,6 +24,7 @@ bool flash_busy(const emu_periph *p);
 /** Begins an operation on a place that holds its result afterwards. Erase: result NULL. */
 void flash_begin(emu_periph *p, uint32_t at, uint32_t size, const uint8_t *result, uint64_t ns);
 uint64_t flash_next(const emu_periph *p);
+void flash_polled(emu_periph *p); /**< the processor has seen it busy: emu_set_flash_poll_ns() */
 void flash_abort(emu_periph *p); /**< a reset cuts it short */
 void flash_key(emu_periph *p, enum flash_lock *lock, uint32_t value, const char *reg);
 emu_periph *flash_new(emu *e, const emu_instance *at, uint32_t largest);

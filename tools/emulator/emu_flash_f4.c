@@ -166,6 +166,15 @@ static void f4_run(emu_periph *p)
     drive(p);
 }
 
+static uint32_t read_sr(emu_periph *p)
+{
+    if (!flash_busy(p)) {
+        return ((const flash *)p->state)->sr;
+    }
+    flash_polled(p);
+    return ((const flash *)p->state)->sr | SR_BSY;
+}
+
 static uint32_t f4_read(emu_periph *p, uint32_t offset, unsigned bytes)
 {
     const flash *s = p->state;
@@ -175,7 +184,7 @@ static uint32_t f4_read(emu_periph *p, uint32_t offset, unsigned bytes)
     case ACR:
         return s->acr;
     case SR:
-        return s->sr | (flash_busy(p) ? SR_BSY : 0);
+        return read_sr(p);
     case CR:
         return s->cr | (s->lock == OPEN ? 0 : CR_LOCK);
     case OPTCR:

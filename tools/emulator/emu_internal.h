@@ -90,7 +90,7 @@ struct emu {
     uint64_t cycle, base_cycle, base_ns;
     uint64_t attention; /**< cycle at which the processor has to look up; 0 = at once */
     uint64_t world_now, world_done;
-    uint64_t stall_ns;
+    uint64_t stall_ns, poll_ns;
     bool exti_dirty, running, stop_here, stop_on_reset, lockup;
     emu_clocks clock;
     emu_exceptions exc;

@@ -343,6 +343,28 @@ static const uint16_t code_two_irqs[] = {
     0xe200, 0xe000, /* .word 0xe000e200 */
 };
 
+/* jumps to code_poll at 20000000, r0 = SR of the flash of F4 */
+static const uint16_t code_to_ram[] = {
+    0x4801,         /* ldr r0, [pc, #4] */
+    0x4902,         /* ldr r1, [pc, #8] */
+    0x4708,         /* bx r1 */
+    0xbf00,         /* nop */
+    0x3c0c, 0x4002, /* .word 0x40023c0c */
+    0x0001, 0x2000, /* .word 0x20000001 */
+};
+
+/* waits until BSY is set, then until it is clear; r4 counts the turns of the second wait */
+static const uint16_t code_poll[] = {
+    0x6802, /* ldr r2, [r0, #0] */
+    0x03d2, /* lsls r2, r2, #15 */
+    0xd5fc, /* bpl.n 0 */
+    0x3401, /* adds r4, #1 */
+    0x6802, /* ldr r2, [r0, #0] */
+    0x03d2, /* lsls r2, r2, #15 */
+    0xd4fb, /* bmi.n 6 */
+    0xe7fe, /* b.n e */
+};
+
 /* shifts 1 into r4 */
 static const uint16_t handler_a[] = {
     0x0124, /* lsls r4, r4, #4 */

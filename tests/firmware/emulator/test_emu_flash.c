@@ -278,6 +278,36 @@ static void test_the_processor_stalls_while_flash_is_busy(void)
     TEST_ASSERT_EQUAL_HEX32(SECTOR3 + 4, emu_register(e, 2)); /* the store also counted its address up */
 }
 
+/* A word is programmed, 16 us = 256 cycles, while the processor waits in RAM; turns of its wait. */
+static unsigned turns(uint64_t poll_ns)
+{
+    uint64_t began;
+
+    e = (emu_destroy(e), START(&emu_f405, &w, code_to_ram));
+    emu_set_flash_poll_ns(e, poll_ns);
+    emu_reset(e, EMU_CAUSE_POWER);
+    emu_poke(e, 0x20000000u, code_poll, sizeof code_poll);
+    (void)emu_run_until(e, emu_now(e) + 10000u);
+    TEST_ASSERT_EQUAL(0, emu_register(e, 4));
+    open_flash(F4_FLASH);
+    wr(e, F4_FLASH + 0x10, 0x201);
+    began = emu_now(e);
+    wr(e, SECTOR3, 0x12345678u);
+    (void)emu_run_until(e, began + 15800u);
+    TEST_ASSERT_LESS_THAN(0x2000000eu, emu_register(e, 15)); /* not before the end */
+    (void)emu_run_until(e, began + 17000u);
+    TEST_ASSERT_EQUAL_HEX32(0x2000000eu, emu_register(e, 15));
+    TEST_ASSERT_EQUAL(0, misuse(e, NULL));
+    return emu_register(e, 4);
+}
+
+static void test_a_wait_in_ram_may_be_shortened_for_the_pc(void)
+{
+    TEST_ASSERT_INT_WITHIN(2, 256 / 4, turns(0));
+    TEST_ASSERT_INT_WITHIN(2, 16000 / (1000 + 3 * 62), turns(1000));
+    TEST_ASSERT_INT_WITHIN(1, 2, turns(1000000)); /* not beyond the end */
+}
+
 static void test_a_store_without_pg_is_a_fault_on_f0(void)
 {
     static const uint16_t store[] = {0x4801, /* ldr r0, [pc, #4] */
@@ -323,6 +353,7 @@ int main(void)
     RUN_TEST(test_a_reset_in_the_middle_leaves_it_half_done);
 #ifdef BQHOST_EMU_CPU
     RUN_TEST(test_the_processor_stalls_while_flash_is_busy);
+    RUN_TEST(test_a_wait_in_ram_may_be_shortened_for_the_pc);
     RUN_TEST(test_a_store_without_pg_is_a_fault_on_f0);
     RUN_TEST(test_power_lost_in_a_running_program);
 #endif
