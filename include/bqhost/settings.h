@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file settings.h
- * The configuration as a record in non-volatile memory (bq_nvm): read at start, written by whoever changes
- * it, or put there by a tool on a PC before the image runs for the first time.
+ * The configuration as a record in non-volatile memory (bq_nvm): read at start, put there by a tool on a PC
+ * before the image runs for the first time, or written by bq_settings_save(), which nothing in src/ calls: no
+ * command of the console and no frame on CAN changes what is stored.
  *
  * A bq_settings lists the structures that make up the configuration, each with the table of its fields. What
  * the two boards store, in this order:
