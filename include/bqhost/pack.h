@@ -180,9 +180,7 @@ typedef struct bq_pack_fault_record {
     int8_t wire;       /**< sense wire of the device (0 = bottom), -1 = none */
     bool active;
     bq_pack_hold hold; /**< why it is still active */
-    uint32_t timer_ms; /**< private: debounce or recovery time passed */
-    bool pending;      /**< the cause is present, debounce time running or over */
-    bool clearing;     /**< private: recovery time running */
+    uint32_t since_ms; /**< private: debounce or recovery time began */
 } bq_pack_fault_record;
 
 typedef enum bq_pack_event_kind {
@@ -218,16 +216,19 @@ typedef struct bq_pack_summary {
 typedef struct bq_pack {
     bq_pack_state_id state;
     bool stepped, have_sequence, started, resting, balancing, outputs_on, drive_charge,
-        drive_discharge;  /* private */
-    uint16_t duty;        /* private */
+        drive_discharge; /* private */
+    uint16_t duty;       /* private */
+    /* what is used most lies near the beginning: only that is one instruction away on a Cortex-M0 */
+    bq_pack_config config;
     uint32_t state_ms;    /**< `now_ms` at which the state was entered */
     uint32_t faults;      /**< bit n = bq_pack_fault n is active */
+    uint32_t pending;     /**< bit n = its cause is present, debounce time running or over */
+    uint32_t last_ms;     /**< `now_ms` of the last step */
     uint32_t event_count; /**< events ever logged, wraps; the newest is at (event_count - 1) %
                                BQ_PACK_EVENTS */
-    uint32_t last_ms, sequence, copy_age_ms, sequence_age_ms, rest_ms; /* private */
+    uint32_t clearing, sequence, copy_age_ms, sequence_age_ms, rest_ms; /* private */
     bq_pack_summary summary;
     bq_soc soc;
-    bq_pack_config config;
     bq_pack_fault_record fault[BQ_FAULT_COUNT];
     bq_pack_event events[BQ_PACK_EVENTS];
     /* private */

@@ -8,22 +8,22 @@ static bool charging(const bq_pack *p, const bq_picture *v)
 }
 
 /* Rest is a small measured current, or open outputs where nobody has ever measured one. */
-static bool resting(const bq_pack *p, const bq_picture *v, const bq_pack_input *in)
+static bool resting(const bq_pack *p, const bq_picture *v)
 {
     if (v->current_known) {
         return v->s->current_ma <= p->config.balance_rest_ma &&
                v->s->current_ma >= -p->config.balance_rest_ma;
     }
-    return v->s != NULL && !v->s->current_valid && !p->outputs_on && in->contactor_mismatch_ms == 0u;
+    return v->s != NULL && !v->s->current_valid && !p->outputs_on && v->in->contactor_mismatch_ms == 0u;
 }
 
 /* Everything but the spread: PL-SEQ-10-01 asks for fresh valid voltages, no fault, no lockout, no sleep. */
-static bool permitted(const bq_pack *p, const bq_picture *v, const bq_pack_input *in)
+static bool permitted(const bq_pack *p, const bq_picture *v)
 {
     const bq_pack_config *k = &p->config;
 
-    return !in->balance_off && (p->state == BQ_PACK_STANDBY || p->state == BQ_PACK_ON) &&
-           in->monitor == BQ_MONITOR_UP && p->summary.complete && !bq_pack_pending(p) &&
+    return !v->in->balance_off && (p->state == BQ_PACK_STANDBY || p->state == BQ_PACK_ON) &&
+           v->in->monitor == BQ_MONITOR_UP && p->summary.complete && p->pending == 0u &&
            k->balance_start_mv != 0u &&
            (p->summary.temp_max == 0u || p->summary.temp_max_dc <= k->balance_max_temp_dc) &&
            (charging(p, v) || (p->resting && p->rest_ms >= k->balance_rest_ms));
@@ -110,16 +110,16 @@ static void choose(bq_pack *p, const bq_sample *s, bq_action *a)
     p->summary.balancing = (uint16_t)chosen;
 }
 
-void bq_pack_balance(bq_pack *p, const bq_picture *v, const bq_pack_input *in, uint32_t dt_ms, bq_action *a)
+void bq_pack_balance(bq_pack *p, const bq_picture *v, bq_action *a)
 {
-    const bool rest = resting(p, v, in);
+    const bool rest = resting(p, v);
 
-    p->rest_ms = rest && p->resting ? bq_pack_add_ms(p->rest_ms, dt_ms) : 0u;
+    p->rest_ms = rest && p->resting ? bq_pack_add_ms(p->rest_ms, v->dt_ms) : 0u;
     p->resting = rest;
     if (p->state != BQ_PACK_STANDBY && p->state != BQ_PACK_ON) {
         p->balancing = false; /* a pause for any other reason keeps it */
     }
-    if (!permitted(p, v, in)) {
+    if (!permitted(p, v)) {
         return;
     }
     p->balancing = wanted(p);

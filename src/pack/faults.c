@@ -24,6 +24,11 @@ static const uint8_t order[BQ_FAULT_COUNT] = {
 #define SPARES_DISCHARGE                                                                                     \
     (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CHIP_CELL_OV) | BIT(BQ_FAULT_UNDERTEMP) |                          \
      BIT(BQ_FAULT_CHARGE_CURRENT))
+/* These become active after the pack's debounce time. */
+#define LIMITS                                                                                               \
+    (BIT(BQ_FAULT_CELL_OV) | BIT(BQ_FAULT_CELL_UV) | BIT(BQ_FAULT_OVERTEMP) | BIT(BQ_FAULT_UNDERTEMP) |      \
+     BIT(BQ_FAULT_IMBALANCE))
+#define DEBOUNCED (LIMITS | BIT(BQ_FAULT_OPEN_WIRE) | BIT(BQ_FAULT_CHARGE_CURRENT))
 /* These clear only while the request is off. */
 #define LATCHED (BIT(BQ_FAULT_CONTACTOR) | BIT(BQ_FAULT_CHARGE_CURRENT))
 
@@ -59,102 +64,95 @@ bq_pack_fault bq_pack_cause(const bq_pack *p)
     return BQ_FAULT_COUNT;
 }
 
-static void trip(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t now_ms)
+static void trip(bq_pack *p, unsigned f, const bq_condition *c)
 {
     bq_pack_fault_record *r = &p->fault[f];
 
     if (r->count == 0u) {
-        r->first_ms = now_ms;
+        r->first_ms = p->last_ms;
     }
     r->count = bq_pack_add_ms(r->count, 1u);
-    r->trip_ms = now_ms;
+    r->trip_ms = p->last_ms;
     r->value = c->value;
     r->cell = c->cell;
     r->device = c->device;
     r->sensor = c->sensor;
-    r->wire = c->wire;
+    r->wire = (int8_t)(c->wire - 1);
     r->active = true;
     p->faults |= BIT(f);
-    bq_pack_log(p, now_ms, BQ_EVENT_FAULT, (uint8_t)f,
-                r->cell != 0u     ? r->cell
-                : r->sensor != 0u ? r->sensor
-                                  : r->device);
+    bq_pack_log(p, BQ_EVENT_FAULT, f, c->cell != 0u ? c->cell : c->sensor != 0u ? c->sensor : c->device);
 }
 
-/* The cause is present: debounce, then active. timer_ms counts from the step that saw it first. */
-static void present(bq_pack *p, bq_pack_fault f, const bq_condition *c, uint32_t now_ms, uint32_t dt_ms)
+/* Whether `ms` have passed since the first of the steps in a row for which this was asked; `row` has a bit
+ * for each fault whose time is running. */
+static bool lasted(const bq_pack *p, bq_pack_fault_record *r, uint32_t *row, uint32_t bit, uint32_t ms)
+{
+    if ((*row & bit) == 0u) {
+        *row |= bit;
+        r->since_ms = p->last_ms;
+    }
+    return p->last_ms - r->since_ms >= ms;
+}
+
+/* The cause is present: debounce, then active. */
+static void present(bq_pack *p, unsigned f, const bq_condition *c)
 {
     bq_pack_fault_record *r = &p->fault[f];
+    const uint32_t bit = BIT(f);
+    const uint32_t debounce_ms = (bit & DEBOUNCED) != 0u ? p->config.debounce_ms : c->debounce_ms;
 
-    r->timer_ms = r->pending ? bq_pack_add_ms(r->timer_ms, dt_ms) : 0u;
-    r->pending = true;
-    r->clearing = false;
-    if (!r->active && r->timer_ms >= c->debounce_ms) {
-        trip(p, f, c, now_ms);
+    p->clearing &= ~bit;
+    if (lasted(p, r, &p->pending, bit, debounce_ms) && !r->active) {
+        trip(p, f, c);
     }
     if (r->active) {
-        r->last_ms = now_ms;
+        r->last_ms = p->last_ms;
         r->hold = BQ_HOLD_CONDITION;
     }
 }
 
-static bq_pack_hold reason(const bq_pack *p, bq_pack_fault f, const bq_pack_input *in, bool clear)
+static bq_pack_hold reason(const bq_pack *p, uint32_t bit, const bq_pack_input *in, bool clear)
 {
-    if (!clear) {
+    if (!clear && (bit & LIMITS) != 0u) {
         return BQ_HOLD_HYSTERESIS;
     }
     if (!p->summary.complete) {
         return BQ_HOLD_UNKNOWN;
     }
-    if ((BIT(f) & LATCHED) != 0u && in->request != BQ_REQUEST_OFF) {
+    if ((bit & LATCHED) != 0u && in->request != BQ_REQUEST_OFF) {
         return BQ_HOLD_REQUEST;
     }
     return BQ_HOLD_TIME;
 }
 
 /* The cause is gone: an active fault clears after recover_ms without a reason to hold, by a new picture. */
-static void gone(bq_pack *p, bq_pack_fault f, const bq_picture *v, const bq_pack_input *in, bool clear,
-                 uint32_t now_ms, uint32_t dt_ms)
+static void gone(bq_pack *p, unsigned f, const bq_picture *v, bool clear)
 {
     bq_pack_fault_record *r = &p->fault[f];
+    const uint32_t bit = BIT(f);
 
-    r->pending = false;
+    p->pending &= ~bit;
     if (!r->active) {
         return;
     }
-    r->hold = reason(p, f, in, clear);
+    r->hold = reason(p, bit, v->in, clear);
     if (r->hold != BQ_HOLD_TIME) {
-        r->clearing = false;
-        return;
-    }
-    r->timer_ms = r->clearing ? bq_pack_add_ms(r->timer_ms, dt_ms) : 0u;
-    r->clearing = true;
-    if (v->fresh && r->timer_ms >= p->config.recover_ms) {
+        p->clearing &= ~bit;
+    } else if (lasted(p, r, &p->clearing, bit, p->config.recover_ms) && v->fresh) {
         r->active = false;
         r->hold = BQ_HOLD_NONE;
-        p->faults &= ~BIT(f);
-        bq_pack_log(p, now_ms, BQ_EVENT_RECOVERED, (uint8_t)f, 0);
+        p->faults &= ~bit;
+        bq_pack_log(p, BQ_EVENT_RECOVERED, f, 0);
     }
 }
 
-void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_pack_input *in, const bq_condition *c,
-                           uint32_t now_ms, uint32_t dt_ms)
+void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_condition *c)
 {
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        if (c[f].broken) {
-            present(p, (bq_pack_fault)f, &c[f], now_ms, dt_ms);
+    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++, c++) {
+        if (c->broken) {
+            present(p, f, c);
         } else {
-            gone(p, (bq_pack_fault)f, v, in, c[f].clear, now_ms, dt_ms);
+            gone(p, f, v, c->clear);
         }
     }
-}
-
-bool bq_pack_pending(const bq_pack *p)
-{
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        if (p->fault[f].pending) {
-            return true;
-        }
-    }
-    return false;
 }

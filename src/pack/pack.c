@@ -20,15 +20,14 @@ const char *bq_pack_hold_name(bq_pack_hold hold)
                    (unsigned)hold <= last ? (unsigned)hold : last + 1u);
 }
 
-void bq_pack_log(bq_pack *p, uint32_t now_ms, bq_pack_event_kind kind, uint8_t code, uint16_t where)
+void bq_pack_log(bq_pack *p, bq_pack_event_kind kind, unsigned code, unsigned where)
 {
-    bq_pack_event *e = &p->events[p->event_count % BQ_PACK_EVENTS];
+    bq_pack_event *e = &p->events[p->event_count++ % BQ_PACK_EVENTS];
 
-    e->t_ms = now_ms;
+    e->t_ms = p->last_ms;
     e->kind = (uint8_t)kind;
-    e->code = code;
-    e->where = where;
-    p->event_count++;
+    e->code = (uint8_t)code;
+    e->where = (uint16_t)where;
 }
 
 bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config)
@@ -46,17 +45,22 @@ bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config)
     return BQ_OK;
 }
 
-/* New flags are logged once each. */
-static void log_chip_flags(bq_pack *p, const bq_picture *v, uint32_t now_ms)
+/* New flags are logged once each. True: there are some that may be cleared, because they are judged in this
+ * same step (PL-SEQ-08-06). */
+static bool log_chip_flags(bq_pack *p, const bq_picture *v)
 {
+    uint32_t any = 0;
+
     for (uint16_t m = 0; v->s != NULL && m < v->s->module_count; m++) {
-        const uint16_t flags = v->s->modules[m].faults;
-        const uint16_t risen = (uint16_t)(flags & (uint16_t)~p->flags[m]);
+        const bq_module_reading *r = &v->s->modules[m];
+        const uint32_t flags = r->faults, risen = flags & ~(uint32_t)p->flags[m];
         if (risen != 0u) {
-            bq_pack_log(p, now_ms, BQ_EVENT_CHIP_FLAGS, (uint8_t)(m + 1u), risen);
+            bq_pack_log(p, BQ_EVENT_CHIP_FLAGS, m + 1u, risen);
         }
-        p->flags[m] = flags;
+        p->flags[m] = (uint16_t)flags;
+        any |= flags | r->cell_ov | r->cell_uv | r->sensor_ot;
     }
+    return any != 0u && v->live;
 }
 
 /* Whatever was measured before the sleep does not count any more. Active faults stay. */
@@ -64,10 +68,8 @@ static void wake(bq_pack *p)
 {
     p->started = false;
     memset(p->blind_ms, 0, sizeof p->blind_ms);
-    for (unsigned f = 0; f < BQ_FAULT_COUNT; f++) {
-        p->fault[f].pending = false;
-        p->fault[f].clearing = false;
-    }
+    p->pending = 0;
+    p->clearing = 0;
 }
 
 /* The transition table of pack.h, line by line. */
@@ -100,7 +102,7 @@ static bq_pack_state_id next_state(const bq_pack *p, const bq_pack_input *in)
         if (!up || !passed) {
             return BQ_PACK_INIT;
         }
-        return in->request == BQ_REQUEST_ON && p->summary.complete && !bq_pack_pending(p) && agrees
+        return in->request == BQ_REQUEST_ON && p->summary.complete && p->pending == 0u && agrees
                    ? BQ_PACK_ON
                    : BQ_PACK_STANDBY;
     default:
@@ -108,7 +110,7 @@ static bq_pack_state_id next_state(const bq_pack *p, const bq_pack_input *in)
     }
 }
 
-static void change_state(bq_pack *p, const bq_pack_input *in, uint32_t now_ms)
+static void change_state(bq_pack *p, const bq_pack_input *in)
 {
     const bq_pack_state_id next = next_state(p, in);
 
@@ -117,8 +119,8 @@ static void change_state(bq_pack *p, const bq_pack_input *in, uint32_t now_ms)
             wake(p);
         }
         p->state = next;
-        p->state_ms = now_ms;
-        bq_pack_log(p, now_ms, BQ_EVENT_STATE, (uint8_t)next, 0);
+        p->state_ms = p->last_ms;
+        bq_pack_log(p, BQ_EVENT_STATE, (unsigned)next, 0);
     }
 }
 
@@ -136,23 +138,11 @@ static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
     a->sleep = p->state == BQ_PACK_SLEEP;
 }
 
-/* Flags seen here are logged and judged in this same step, so they may be cleared (PL-SEQ-08-06). */
-static bool flags_present(const bq_pack *p, const bq_picture *v)
-{
-    for (uint16_t m = 0; v->s != NULL && m < v->s->module_count; m++) {
-        const bq_module_reading *r = &v->s->modules[m];
-        if (p->flags[m] != 0u || r->cell_ov != 0u || r->cell_uv != 0u || r->sensor_ot != 0u) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void update_soc(bq_pack *p, const bq_picture *v, uint32_t dt_ms)
+static void update_soc(bq_pack *p, const bq_picture *v)
 {
     const uint32_t mean = p->summary.complete ? p->summary.pack_mv / p->config.cells : 0u;
 
-    bq_soc_step(&p->soc, &p->config.soc, dt_ms, v->current_known, v->current_known ? v->s->current_ma : 0,
+    bq_soc_step(&p->soc, &p->config.soc, v->dt_ms, v->current_known, v->current_known ? v->s->current_ma : 0,
                 (uint16_t)mean);
     p->summary.soc_permille = bq_soc_permille(&p->soc, &p->config.soc);
 }
@@ -161,7 +151,7 @@ void bq_pack_step(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint3
 {
     bq_picture v;
     bq_condition c[BQ_FAULT_COUNT];
-    uint32_t dt_ms;
+    bool flags = false;
 
     if (a != NULL) {
         memset(a, 0, sizeof *a);
@@ -169,18 +159,20 @@ void bq_pack_step(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint3
     if (p == NULL || in == NULL || a == NULL) {
         return;
     }
-    dt_ms = p->stepped ? now_ms - p->last_ms : 0u;
+    memset(&v, 0, sizeof v);
+    v.in = in;
+    v.dt_ms = p->stepped ? now_ms - p->last_ms : 0u;
     p->last_ms = now_ms;
     p->stepped = true;
-    bq_pack_look(p, s, in, dt_ms, &v);
+    bq_pack_look(p, s, &v);
     if (p->state != BQ_PACK_SLEEP) {
-        log_chip_flags(p, &v, now_ms);
-        bq_pack_judge(p, &v, in, c);
-        bq_pack_update_faults(p, &v, in, c, now_ms, dt_ms);
+        flags = log_chip_flags(p, &v);
+        bq_pack_judge(p, &v, c);
+        bq_pack_update_faults(p, &v, c);
     }
-    change_state(p, in, now_ms);
+    change_state(p, in);
     decide_outputs(p, in, a);
-    bq_pack_balance(p, &v, in, dt_ms, a);
-    a->clear_faults = p->state != BQ_PACK_SLEEP && v.live && flags_present(p, &v);
-    update_soc(p, &v, dt_ms);
+    bq_pack_balance(p, &v, a);
+    a->clear_faults = flags && p->state != BQ_PACK_SLEEP;
+    update_soc(p, &v);
 }

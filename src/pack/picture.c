@@ -41,21 +41,25 @@ static uint32_t module_age(const bq_pack *p, const bq_sample *s, uint16_t m)
     return age > p->sequence_age_ms ? age : p->sequence_age_ms;
 }
 
-static void advance_ages(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t dt_ms,
-                         bq_picture *v)
+static void advance_ages(bq_pack *p, bq_picture *v)
 {
-    p->copy_age_ms = s != NULL && in->sample_copied ? 0u : bq_pack_add_ms(p->copy_age_ms, dt_ms);
-    v->fresh = s != NULL && (!p->have_sequence || s->sequence != p->sequence);
+    p->copy_age_ms = v->s != NULL && v->in->sample_copied ? 0u : bq_pack_add_ms(p->copy_age_ms, v->dt_ms);
+    p->sequence_age_ms = bq_pack_add_ms(p->sequence_age_ms, v->dt_ms);
+    v->fresh = v->s != NULL && (!p->have_sequence || v->s->sequence != p->sequence);
     if (v->fresh) {
-        p->sequence = s->sequence;
+        p->sequence = v->s->sequence;
         p->have_sequence = true;
         p->sequence_age_ms = 0;
-    } else {
-        p->sequence_age_ms = bq_pack_add_ms(p->sequence_age_ms, dt_ms);
     }
     for (uint16_t m = 0; m < p->config.modules; m++) {
-        p->blind_ms[m] = v->live ? bq_pack_add_ms(p->blind_ms[m], dt_ms) : 0u;
+        p->blind_ms[m] = v->live ? bq_pack_add_ms(p->blind_ms[m], v->dt_ms) : 0u;
     }
+}
+
+static void mark(bq_picture *v, unsigned m, unsigned what)
+{
+    v->module[m] |= (uint8_t)what;
+    v->any |= (uint8_t)what;
 }
 
 static void look_at_modules(const bq_pack *p, bq_picture *v)
@@ -63,15 +67,14 @@ static void look_at_modules(const bq_pack *p, bq_picture *v)
     for (uint16_t m = 0; m < v->s->module_count; m++) {
         const uint16_t flags = v->s->modules[m].faults;
         if (module_age(p, v->s, m) > p->config.comm_timeout_ms) {
-            v->module[m] |= BQ_MODULE_OLD;
+            mark(v, m, BQ_MODULE_OLD);
         }
         if ((flags & BQ_F_COMM) != 0u) {
-            v->module[m] |= BQ_MODULE_SILENT;
+            mark(v, m, BQ_MODULE_SILENT);
         }
         if ((flags & BQ_F_SUPPLY) != 0u) {
-            v->module[m] |= BQ_MODULE_DISCARDED | BQ_MODULE_NO_CELL;
+            mark(v, m, BQ_MODULE_DISCARDED | BQ_MODULE_NO_CELL);
         }
-        v->untrusted = v->untrusted || (v->module[m] & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u;
     }
 }
 
@@ -87,50 +90,50 @@ static void take_sensor(bq_pack_summary *y, uint16_t number, int16_t dc)
     }
 }
 
-/* Whether reading i of module m may decide: a valid one that is fresh, or the last good value of one that is
- * not. What is not valid counts against its module, as `kind` where it is not silent. `seen` has a bit for
- * each reading that has been valid once. */
-static bool decides(bq_pack *p, bq_picture *v, uint32_t *seen, uint16_t i, uint8_t quality, uint8_t m,
-                    uint8_t kind)
+/* Whether cell or sensor i (from 0) may decide: a valid reading that is fresh, or the last good value of one
+ * that is not. What is not valid counts against its module. `seen` has a bit for each that has been valid
+ * once. */
+static bool decides(bq_pack *p, bq_picture *v, bool sensor, unsigned i)
 {
-    const uint32_t bit = (uint32_t)1u << (i % 32u);
+    const bq_cell_reading *r = bq_reading(v->s, sensor, i);
+    const uint32_t bit = (uint32_t)1u << (i % 32u), quality = r->quality;
+    uint32_t *seen = &(sensor ? p->sensor_seen : p->cell_seen)[i / 32u];
+    const unsigned m = r->module;
 
     if ((quality & BQ_Q_VALID) != 0u) {
         if ((v->module[m] & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u) {
             return false;
         }
         if (!p->started) {
-            seen[i / 32u] |= bit;
+            *seen |= bit;
         }
         return true;
     }
-    v->module[m] |= (quality & BQ_Q_COMM) != 0u ? (uint8_t)BQ_MODULE_SILENT : kind;
-    return (seen[i / 32u] & bit) != 0u && p->blind_ms[m] <= p->config.comm_timeout_ms &&
-           (v->module[m] & BQ_MODULE_DISCARDED) == 0u;
-}
-
-static bool cell_decides(bq_pack *p, bq_picture *v, uint16_t i)
-{
-    const bq_cell_reading *c = &v->s->cells[i];
-
-    if ((c->quality & (BQ_Q_OPEN_WIRE | BQ_Q_VALID)) == BQ_Q_OPEN_WIRE && v->open_cell == 0u) {
+    if ((quality & BQ_Q_OPEN_WIRE) != 0u && v->open_cell == 0u && !sensor) {
         v->open_cell = (uint16_t)(i + 1u);
     }
-    return decides(p, v, p->cell_seen, i, c->quality, c->module, BQ_MODULE_NO_CELL);
+    mark(v, m,
+         (quality & BQ_Q_COMM) != 0u ? BQ_MODULE_SILENT
+         : sensor                    ? BQ_MODULE_NO_TEMP
+                                     : BQ_MODULE_NO_CELL);
+    return (*seen & bit) != 0u && p->blind_ms[m] <= p->config.comm_timeout_ms &&
+           (v->module[m] & BQ_MODULE_DISCARDED) == 0u;
 }
 
 /* The longest loop of a step: what it collects stays in registers, and where nothing is wrong with any module
  * a valid cell simply counts. */
-static void look_at_cells(bq_pack *p, bq_picture *v, bq_pack_summary *y)
+static void look_at_cells(bq_pack *p, bq_picture *v)
 {
-    const uint32_t plain = p->started && !v->untrusted ? BQ_Q_VALID : 0u;
+    const bool untrusted = (v->any & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u;
+    const uint32_t plain = p->started && !untrusted ? BQ_Q_VALID : 0u;
+    bq_pack_summary *y = &p->summary;
     const uint16_t count = v->s->cell_count;
     const bq_cell_reading *c = v->s->cells;
     uint32_t sum = 0, highest = 0, lowest = UINT32_MAX, at_highest = 0, at_lowest = 0;
 
     for (uint32_t i = 0; i < count; i++, c++) {
         const uint32_t mv = c->mv;
-        if ((c->quality & plain) == 0u && !cell_decides(p, v, (uint16_t)i)) {
+        if ((c->quality & plain) == 0u && !decides(p, v, false, i)) {
             continue;
         }
         sum += mv;
@@ -150,56 +153,50 @@ static void look_at_cells(bq_pack *p, bq_picture *v, bq_pack_summary *y)
     y->cell_min = (uint16_t)at_lowest;
 }
 
-static void look_at_sensors(bq_pack *p, bq_picture *v, bq_pack_summary *y)
+static void look_at_sensors(bq_pack *p, bq_picture *v)
 {
     for (uint16_t i = 0; i < v->s->temp_count; i++) {
-        const bq_temp_reading *t = &v->s->temps[i];
-        if (decides(p, v, p->sensor_seen, i, t->quality, t->module, BQ_MODULE_NO_TEMP)) {
-            take_sensor(y, (uint16_t)(i + 1u), t->dc);
+        if (decides(p, v, true, i)) {
+            take_sensor(&p->summary, (uint16_t)(i + 1u), v->s->temps[i].dc);
         }
     }
 }
 
 /* A module with only valid readings is as blind as they are old. Complete = that, and fresh, everywhere. */
-static void update_blindness(bq_pack *p, const bq_picture *v, const bq_pack_input *in, bq_pack_summary *y)
+static void update_blindness(bq_pack *p, const bq_picture *v)
 {
-    uint8_t any = 0;
+    bq_pack_summary *y = &p->summary;
 
-    for (uint16_t m = 0; m < p->config.modules; m++) {
-        any |= v->module[m];
-    }
-    y->complete = v->s != NULL && (any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u &&
+    y->complete = v->s != NULL && (v->any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u &&
                   (v->current_known || !bq_pack_limits_current(&p->config));
-    p->started = p->started || (y->complete && in->monitor == BQ_MONITOR_UP);
+    p->started = p->started || (y->complete && v->in->monitor == BQ_MONITOR_UP);
     for (uint16_t m = 0; m < p->config.modules; m++) {
+        uint32_t blind = p->blind_ms[m];
         if (v->s != NULL && v->live &&
             (v->module[m] & (BQ_MODULE_SILENT | BQ_MODULE_NO_CELL | BQ_MODULE_NO_TEMP)) == 0u) {
             const uint32_t age = module_age(p, v->s, m);
             /* until the first complete picture the time since the monitor is up counts */
-            p->blind_ms[m] = p->started || age < p->blind_ms[m] ? age : p->blind_ms[m];
+            blind = p->started || age < blind ? age : blind;
+            p->blind_ms[m] = blind;
         }
-        if (p->blind_ms[m] > y->blind_ms) {
-            y->blind_ms = p->blind_ms[m];
+        if (blind > y->blind_ms) {
+            y->blind_ms = blind;
         }
     }
 }
 
-void bq_pack_look(bq_pack *p, const bq_sample *s, const bq_pack_input *in, uint32_t dt_ms, bq_picture *v)
+void bq_pack_look(bq_pack *p, const bq_sample *s, bq_picture *v)
 {
-    bq_pack_summary y;
-
-    memset(v, 0, sizeof *v);
-    memset(&y, 0, sizeof y);
-    v->live = p->started || in->monitor == BQ_MONITOR_UP;
+    memset(&p->summary, 0, sizeof p->summary);
+    v->live = p->started || v->in->monitor == BQ_MONITOR_UP;
     v->s = shape_ok(p, s) ? s : NULL;
-    advance_ages(p, v->s, in, dt_ms, v);
+    advance_ages(p, v);
     if (v->s != NULL) {
         look_at_modules(p, v);
-        look_at_cells(p, v, &y);
-        look_at_sensors(p, v, &y);
+        look_at_cells(p, v);
+        look_at_sensors(p, v);
         v->current_known = s->current_valid &&
                            bq_pack_add_ms(s->current_age_ms, p->copy_age_ms) <= p->config.comm_timeout_ms;
     }
-    update_blindness(p, v, in, &y);
-    p->summary = y;
+    update_blindness(p, v);
 }

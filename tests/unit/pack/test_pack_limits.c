@@ -93,7 +93,7 @@ static void test_a_value_beyond_trips_exactly_after_the_debounce_time(void)
         rig_scan(&r); /* first sight: debounce begins */
         rig_run(&r, config.debounce_ms - RIG_PERIOD);
         TEST_ASSERT_EQUAL_MESSAGE(BQ_PACK_ON, r.p.state, name);
-        TEST_ASSERT_TRUE(r.p.fault[limits[i].fault].pending);
+        TEST_ASSERT_EQUAL(1u << limits[i].fault, r.p.pending);
         TEST_ASSERT_TRUE(r.a.charge_on && r.a.discharge_on);
         rig_scan(&r);
         TEST_ASSERT_EQUAL_MESSAGE(BQ_PACK_FAULT, r.p.state, name);
