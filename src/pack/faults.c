@@ -64,10 +64,17 @@ bq_pack_fault bq_pack_cause(const bq_pack *p)
     return BQ_FAULT_COUNT;
 }
 
-static void trip(bq_pack *p, unsigned f, const bq_condition *c)
+static void trip(bq_pack *p, unsigned f, const bq_condition *c, const bq_sample *s)
 {
     bq_pack_fault_record *r = &p->fault[f];
+    unsigned where = c->cell != 0u ? c->cell : c->sensor;
 
+    r->device = c->device;
+    if (where == 0u) {
+        where = c->device;
+    } else if (c->device == 0u) {
+        r->device = (uint8_t)(bq_reading(s, c->cell == 0u, where - 1u)->module + 1u);
+    }
     if (r->count == 0u) {
         r->first_ms = p->last_ms;
     }
@@ -75,12 +82,11 @@ static void trip(bq_pack *p, unsigned f, const bq_condition *c)
     r->trip_ms = p->last_ms;
     r->value = c->value;
     r->cell = c->cell;
-    r->device = c->device;
     r->sensor = c->sensor;
     r->wire = (int8_t)(c->wire - 1);
     r->active = true;
     p->faults |= BIT(f);
-    bq_pack_log(p, BQ_EVENT_FAULT, f, c->cell != 0u ? c->cell : c->sensor != 0u ? c->sensor : c->device);
+    bq_pack_log(p, BQ_EVENT_FAULT, f, where);
 }
 
 /* Whether `ms` have passed since the first of the steps in a row for which this was asked; `row` has a bit
@@ -95,7 +101,7 @@ static bool lasted(const bq_pack *p, bq_pack_fault_record *r, uint32_t *row, uin
 }
 
 /* The cause is present: debounce, then active. */
-static void present(bq_pack *p, unsigned f, const bq_condition *c)
+static void present(bq_pack *p, unsigned f, const bq_condition *c, const bq_sample *s)
 {
     bq_pack_fault_record *r = &p->fault[f];
     const uint32_t bit = BIT(f);
@@ -103,7 +109,7 @@ static void present(bq_pack *p, unsigned f, const bq_condition *c)
 
     p->clearing &= ~bit;
     if (lasted(p, r, &p->pending, bit, debounce_ms) && !r->active) {
-        trip(p, f, c);
+        trip(p, f, c, s);
     }
     if (r->active) {
         r->last_ms = p->last_ms;
@@ -150,7 +156,7 @@ void bq_pack_update_faults(bq_pack *p, const bq_picture *v, const bq_condition *
 {
     for (unsigned f = 0; f < BQ_FAULT_COUNT; f++, c++) {
         if (c->broken) {
-            present(p, f, c);
+            present(p, f, c, v->s);
         } else {
             gone(p, f, v, c->clear);
         }

@@ -38,12 +38,6 @@ static bool find(const bq_sample *s, bq_condition *c, bool sensor, int k)
     return false;
 }
 
-static void at(bq_condition *c, const bq_sample *s, bool sensor, unsigned n)
-{
-    set_place(c, sensor, n);
-    c->device = (uint8_t)(bq_reading(s, sensor, n - 1u)->module + 1u);
-}
-
 static int lowest_bit(uint32_t mask)
 {
     int n = 0;
@@ -59,67 +53,6 @@ static int32_t as_value(uint32_t ms)
     return ms > INT32_MAX ? INT32_MAX : (int32_t)ms;
 }
 
-/* A limit that must not be exceeded, or, where it lies below its release, not be undercut. */
-static void limit(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
-{
-    const bool high = trip > clear;
-
-    c->value = value;
-    c->broken = high ? value > trip : value < trip;
-    c->clear = high ? value < clear : value > clear;
-}
-
-static void judge_cells(const bq_pack *p, const bq_sample *s, bq_condition *c)
-{
-    const bq_pack_config *k = &p->config;
-    const bq_pack_summary *y = &p->summary;
-
-    if (y->cell_max == 0u) {
-        return;
-    }
-    limit(&c[BQ_FAULT_CELL_OV], y->cell_max_mv, k->cell_ov_mv, k->cell_ov_clear_mv);
-    at(&c[BQ_FAULT_CELL_OV], s, false, y->cell_max);
-    limit(&c[BQ_FAULT_CELL_UV], y->cell_min_mv, k->cell_uv_mv, k->cell_uv_clear_mv);
-    at(&c[BQ_FAULT_CELL_UV], s, false, y->cell_min);
-    limit(&c[BQ_FAULT_IMBALANCE], y->cell_max_mv - y->cell_min_mv,
-          k->imbalance_mv != 0u ? k->imbalance_mv : UINT16_MAX, k->imbalance_clear_mv);
-    at(&c[BQ_FAULT_IMBALANCE], s, false, y->cell_min);
-}
-
-static void judge_sensors(const bq_pack *p, const bq_sample *s, bq_condition *c)
-{
-    const bq_pack_config *k = &p->config;
-    const bq_pack_summary *y = &p->summary;
-
-    if (y->temp_max == 0u) {
-        return;
-    }
-    limit(&c[BQ_FAULT_OVERTEMP], y->temp_max_dc, k->overtemp_dc, k->overtemp_clear_dc);
-    at(&c[BQ_FAULT_OVERTEMP], s, true, y->temp_max);
-    limit(&c[BQ_FAULT_UNDERTEMP], y->temp_min_dc, k->undertemp_dc, k->undertemp_clear_dc);
-    at(&c[BQ_FAULT_UNDERTEMP], s, true, y->temp_min);
-}
-
-/* Limits of the current, where there are any: then it must be known. */
-static void judge_current(const bq_pack *p, const bq_picture *v, bq_condition *c)
-{
-    const bq_pack_config *k = &p->config;
-    const int32_t ma = v->s->current_ma;
-
-    if (!v->current_known) {
-        c[BQ_FAULT_SENSOR].broken = p->started && bq_pack_limits_current(k);
-        c[BQ_FAULT_SENSOR].value = as_value(v->s->current_age_ms);
-        return;
-    }
-    if (k->charge_max_ma != 0) {
-        limit(&c[BQ_FAULT_CHARGE_CURRENT], ma, k->charge_max_ma, 0);
-    }
-    if (k->discharge_max_ma != 0) {
-        limit(&c[BQ_FAULT_OVERCURRENT], ma, -k->discharge_max_ma, 0);
-        c[BQ_FAULT_OVERCURRENT].debounce_ms = k->debounce_ms;
-    }
-}
-
 /* Takes what shows the cause first, or what shows it at once after what has to last. False if it is not
  * taken. */
 static bool found(bq_condition *c, uint8_t device, int32_t value, uint16_t debounce_ms)
@@ -132,6 +65,68 @@ static bool found(bq_condition *c, uint8_t device, int32_t value, uint16_t debou
     c->device = device;
     c->value = value;
     return true;
+}
+
+/* A limit that must not be exceeded, or, where it lies below its release, not be undercut. */
+static void limit(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
+{
+    const bool high = trip > clear;
+
+    c->value = value;
+    c->broken = high ? value > trip : value < trip;
+    c->clear = high ? value < clear : value > clear;
+}
+
+static void judge_cells(const bq_pack *p, bq_condition *c)
+{
+    const bq_pack_config *k = &p->config;
+    const bq_pack_summary *y = &p->summary;
+
+    if (y->cell_max == 0u) {
+        return;
+    }
+    limit(&c[BQ_FAULT_CELL_OV], y->cell_max_mv, k->cell_ov_mv, k->cell_ov_clear_mv);
+    c[BQ_FAULT_CELL_OV].cell = y->cell_max;
+    limit(&c[BQ_FAULT_CELL_UV], y->cell_min_mv, k->cell_uv_mv, k->cell_uv_clear_mv);
+    c[BQ_FAULT_CELL_UV].cell = y->cell_min;
+    limit(&c[BQ_FAULT_IMBALANCE], y->cell_max_mv - y->cell_min_mv,
+          k->imbalance_mv != 0u ? k->imbalance_mv : UINT16_MAX, k->imbalance_clear_mv);
+    c[BQ_FAULT_IMBALANCE].cell = y->cell_min;
+}
+
+static void judge_sensors(const bq_pack *p, bq_condition *c)
+{
+    const bq_pack_config *k = &p->config;
+    const bq_pack_summary *y = &p->summary;
+
+    if (y->temp_max == 0u) {
+        return;
+    }
+    limit(&c[BQ_FAULT_OVERTEMP], y->temp_max_dc, k->overtemp_dc, k->overtemp_clear_dc);
+    c[BQ_FAULT_OVERTEMP].sensor = y->temp_max;
+    limit(&c[BQ_FAULT_UNDERTEMP], y->temp_min_dc, k->undertemp_dc, k->undertemp_clear_dc);
+    c[BQ_FAULT_UNDERTEMP].sensor = y->temp_min;
+}
+
+/* Limits of the current, where there are any: then it must be known. */
+static void judge_current(const bq_pack *p, const bq_picture *v, bq_condition *c)
+{
+    const bq_pack_config *k = &p->config;
+    const int32_t ma = v->s->current_ma;
+
+    if (!v->current_known) {
+        if (p->started && bq_pack_limits_current(k)) {
+            (void)found(&c[BQ_FAULT_SENSOR], 0, as_value(v->s->current_age_ms), 0);
+        }
+        return;
+    }
+    if (k->charge_max_ma != 0) {
+        limit(&c[BQ_FAULT_CHARGE_CURRENT], ma, k->charge_max_ma, 0);
+    }
+    if (k->discharge_max_ma != 0) {
+        limit(&c[BQ_FAULT_OVERCURRENT], ma, -k->discharge_max_ma, 0);
+        c[BQ_FAULT_OVERCURRENT].debounce_ms = k->debounce_ms;
+    }
 }
 
 /* Bit n of a list: cell, sensor or wire n. */
@@ -186,7 +181,7 @@ static void judge_modules(const bq_pack *p, const bq_picture *v, bq_condition *c
         judge_module(p, v->s, &v->s->modules[m], (uint8_t)(m + 1u), c);
     }
     if (v->open_cell != 0u && found(&c[BQ_FAULT_OPEN_WIRE], 0, 0, 0)) {
-        at(&c[BQ_FAULT_OPEN_WIRE], v->s, false, v->open_cell);
+        c[BQ_FAULT_OPEN_WIRE].cell = v->open_cell;
     }
 }
 
@@ -230,8 +225,8 @@ void bq_pack_judge(const bq_pack *p, const bq_picture *v, bq_condition *c)
 {
     memset(c, 0, sizeof *c * BQ_FAULT_COUNT);
     if (v->live && v->s != NULL) {
-        judge_cells(p, v->s, c);
-        judge_sensors(p, v->s, c);
+        judge_cells(p, c);
+        judge_sensors(p, c);
         judge_current(p, v, c);
         judge_modules(p, v, c);
     }

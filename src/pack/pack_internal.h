@@ -39,8 +39,8 @@ typedef struct bq_condition {
     uint16_t debounce_ms; /* how long it must be present, of those that have none of the pack's */
     int32_t value;
     uint16_t cell;
-    uint8_t device, sensor;
-    int8_t wire; /* + 1; 0 = none */
+    uint8_t device, sensor; /* no device: that of the cell or the sensor */
+    int8_t wire;            /* + 1; 0 = none */
 } bq_condition;
 
 uint32_t bq_pack_add_ms(uint32_t a, uint32_t b); /* saturating */
