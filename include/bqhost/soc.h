@@ -33,12 +33,12 @@ typedef struct bq_soc_config {
 } bq_soc_config;
 
 typedef struct bq_soc {
-    int64_t charge_ma_ms;  /**< charge in the pack, mA x ms; 1 mAh = 3600000 */
-    uint32_t resting_ms;   /**< how long rest has lasted, saturating */
-    uint32_t unknown_ms;   /**< sum of times with unknown current since the start value, saturating */
-    int32_t last_ma;       /**< current of the last step */
-    bool last_known;       /**< last_ma is a measured value */
-    bool valid;            /**< permille() is meaningful */
+    int64_t charge;      /**< in the pack, in halves of mA x ms; 1 mAh = 7200000 */
+    uint32_t resting_ms; /**< how long rest has lasted, saturating */
+    uint32_t unknown_ms; /**< sum of times with unknown current since the start value, saturating */
+    int32_t last_ma;     /**< current of the last step */
+    bool last_known;     /**< last_ma is a measured value */
+    bool valid;          /**< permille() is meaningful */
 } bq_soc;
 
 /** True if the configuration can be used: points = 0, or a table as described, capacity and rest within their
