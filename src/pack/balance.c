@@ -45,69 +45,36 @@ static uint32_t least_mv(const bq_pack *p)
     return above > p->config.balance_min_cell_mv ? above : p->config.balance_min_cell_mv;
 }
 
-/* The cell of first..end - 1 to choose after `last` (end = none was chosen): the highest from `least` on, the
- * lower number of equals; end = none is left. */
-static uint16_t next_highest(const bq_sample *s, uint16_t first, uint16_t end, uint32_t least, uint16_t last)
+/* How many cells of the module that begins at `first` are to be bled rather than cell i: the higher ones, and
+ * of equals those with a lower number. */
+static uint32_t before(const bq_sample *s, uint32_t first, uint32_t i)
 {
-    const uint32_t below = last == end ? UINT32_MAX : s->cells[last].mv;
-    const bq_cell_reading *c = &s->cells[first];
-    uint16_t best = end;
+    const bq_cell_reading *me = &s->cells[i];
+    uint32_t n = 0;
 
-    for (uint16_t i = first; i < end; i++, c++) {
-        const uint32_t mv = c->mv;
-        if (mv >= least && mv <= below && (mv != below || i > last)) {
-            best = i;
-            least = mv + 1u;
+    for (; first < s->cell_count && s->cells[first].module == me->module; first++) {
+        const bq_cell_reading *c = &s->cells[first];
+        if (c->mv > me->mv || (c->mv == me->mv && first < i)) {
+            n++;
         }
     }
-    return best;
-}
-
-/* Cells first..end - 1 form one module. */
-static uint16_t choose_in_module(const bq_pack *p, const bq_sample *s, uint16_t first, uint16_t end,
-                                 uint32_t least, bq_action *a)
-{
-    const uint16_t limit = p->config.balance_max_per_module;
-    uint16_t chosen = 0, last = end;
-
-    if (limit == 0u || limit >= end - first) {
-        for (uint16_t i = first; i < end; i++) {
-            if (s->cells[i].mv >= least) {
-                bq_mask_set(a->balance, (uint16_t)(i + 1u));
-                chosen++;
-            }
-        }
-        return chosen;
-    }
-    while (chosen < limit) {
-        last = next_highest(s, first, end, least, last);
-        if (last == end) {
-            break;
-        }
-        bq_mask_set(a->balance, (uint16_t)(last + 1u));
-        chosen++;
-    }
-    return chosen;
+    return n;
 }
 
 static void choose(bq_pack *p, const bq_sample *s, bq_action *a)
 {
-    const uint32_t least = least_mv(p);
-    uint32_t chosen = 0;
-    uint16_t first = 0;
+    const uint32_t least = least_mv(p), limit = p->config.balance_max_per_module;
+    uint32_t first = 0;
 
-    while (first < s->cell_count) {
-        const bq_cell_reading *c = &s->cells[first];
-        const uint32_t module = c->module;
-        uint16_t end = first;
-        do {
-            end++;
-            c++;
-        } while (end < s->cell_count && c->module == module);
-        chosen += choose_in_module(p, s, first, end, least, a);
-        first = end;
+    for (uint32_t i = 0; i < s->cell_count; i++) {
+        if (s->cells[i].module != s->cells[first].module) {
+            first = i;
+        }
+        if (s->cells[i].mv >= least && (limit == 0u || before(s, first, i) < limit)) {
+            bq_mask_set(a->balance, (uint16_t)(i + 1u));
+            p->summary.balancing++;
+        }
     }
-    p->summary.balancing = (uint16_t)chosen;
 }
 
 void bq_pack_balance(bq_pack *p, const bq_picture *v, bq_action *a)

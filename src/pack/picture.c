@@ -8,30 +8,26 @@ uint32_t bq_pack_add_ms(uint32_t a, uint32_t b)
     return b > UINT32_MAX - a ? UINT32_MAX : a + b;
 }
 
-/* The configured numbers of everything; cells in the order of their modules, nothing outside these. */
-static bool shape_ok(const bq_pack *p, const bq_sample *s)
+/* Nothing is outside the modules, and cells are in their order. */
+static bool places_ok(const bq_sample *s, bool sensor)
 {
-    uint32_t module = 0;
+    const bq_cell_reading *r = bq_reading(s, sensor, 0);
+    uint32_t least = 0;
 
-    if (s == NULL || s->cell_count != p->config.cells || s->temp_count != p->config.sensors ||
-        s->module_count != p->config.modules) {
-        return false;
-    }
-    for (const bq_cell_reading *c = s->cells, *end = c + s->cell_count; c != end; c++) {
-        if (c->module < module) {
+    for (uint32_t n = sensor ? s->temp_count : s->cell_count; n > 0u; n--, r++) {
+        if (r->module < least || r->module >= s->module_count) {
             return false;
         }
-        module = c->module;
-    }
-    if (module >= s->module_count) {
-        return false;
-    }
-    for (uint16_t i = 0; i < s->temp_count; i++) {
-        if (s->temps[i].module >= s->module_count) {
-            return false;
-        }
+        least = sensor ? 0u : r->module;
     }
     return true;
+}
+
+/* The configured numbers of everything. */
+static bool shape_ok(const bq_pack *p, const bq_sample *s)
+{
+    return s != NULL && s->cell_count == p->config.cells && s->temp_count == p->config.sensors &&
+           s->module_count == p->config.modules && places_ok(s, false) && places_ok(s, true);
 }
 
 static uint32_t module_age(const bq_pack *p, const bq_sample *s, uint16_t m)
