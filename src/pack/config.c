@@ -165,52 +165,41 @@ bq_status bq_pack_config_validate(const bq_pack_config *config, const char **fie
 }
 
 /* What does not depend on the chemistry. */
-static bq_pack_config common(uint16_t cells, uint16_t sensors, uint16_t modules)
-{
-    bq_pack_config c;
+#define COMMON                                                                                               \
+    .overtemp_dc = 600, .overtemp_clear_dc = 550, .undertemp_dc = -200, .undertemp_clear_dc = -150,          \
+    .imbalance_mv = 500, .imbalance_clear_mv = 400, .debounce_ms = 300, .recover_ms = 5000,                  \
+    .comm_timeout_ms = 2000, .balance_start_mv = 15, .balance_stop_mv = 5, .balance_max_temp_dc = 500,       \
+    .balance_rest_ma = 500, .balance_rest_ms = 60000, .balance_duty_percent = 90
 
-    memset(&c, 0, sizeof c);
+static const bq_pack_config nmc = {COMMON,
+                                   .cell_ov_mv = 4250,
+                                   .cell_ov_clear_mv = 4150,
+                                   .cell_uv_mv = 2700,
+                                   .cell_uv_clear_mv = 3000,
+                                   .balance_min_cell_mv = 3500};
+static const bq_pack_config lfp = {COMMON,
+                                   .cell_ov_mv = 3650,
+                                   .cell_ov_clear_mv = 3500,
+                                   .cell_uv_mv = 2500,
+                                   .cell_uv_clear_mv = 2900,
+                                   .balance_min_cell_mv = 3350};
+
+static bq_pack_config sized(const bq_pack_config *from, uint16_t cells, uint16_t sensors, uint16_t modules)
+{
+    bq_pack_config c = *from;
+
     c.cells = cells;
     c.sensors = sensors;
     c.modules = modules;
-    c.overtemp_dc = 600;
-    c.overtemp_clear_dc = 550;
-    c.undertemp_dc = -200;
-    c.undertemp_clear_dc = -150;
-    c.imbalance_mv = 500;
-    c.imbalance_clear_mv = 400;
-    c.debounce_ms = 300;
-    c.recover_ms = 5000;
-    c.comm_timeout_ms = 2000;
-    c.balance_start_mv = 15;
-    c.balance_stop_mv = 5;
-    c.balance_max_temp_dc = 500;
-    c.balance_rest_ma = 500;
-    c.balance_rest_ms = 60000;
-    c.balance_duty_percent = 90;
     return c;
 }
 
 bq_pack_config bq_pack_config_nmc(uint16_t cells, uint16_t sensors, uint16_t modules)
 {
-    bq_pack_config c = common(cells, sensors, modules);
-
-    c.cell_ov_mv = 4250;
-    c.cell_ov_clear_mv = 4150;
-    c.cell_uv_mv = 2700;
-    c.cell_uv_clear_mv = 3000;
-    c.balance_min_cell_mv = 3500;
-    return c;
+    return sized(&nmc, cells, sensors, modules);
 }
 
 bq_pack_config bq_pack_config_lfp(uint16_t cells, uint16_t sensors, uint16_t modules)
 {
-    bq_pack_config c = common(cells, sensors, modules);
-
-    c.cell_ov_mv = 3650;
-    c.cell_ov_clear_mv = 3500;
-    c.cell_uv_mv = 2500;
-    c.cell_uv_clear_mv = 2900;
-    c.balance_min_cell_mv = 3350;
-    return c;
+    return sized(&lfp, cells, sensors, modules);
 }
