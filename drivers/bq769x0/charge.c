@@ -49,23 +49,38 @@ void bq769x0_charge_reset(bq769x0 *d)
     memset(&t->charge, 0, sizeof t->charge);
 }
 
+/* What configuration set for GAIN2 = 1, scaled. */
+void x0_rescale(bq769x0 *d)
+{
+    uint32_t gain2 = d->gain2_q15;
+    bq769x0_trim trim = x0_trim(d);
+    d->scale = gain2 * trim.gain_uv / 125u;
+    d->scale_zero = (int32_t)(gain2 * 8u) * trim.offset_mv + 0x20000;
+}
+
+static void rescale(bq769x0 *d, uint16_t gain2_q15)
+{
+    d->gain2_q15 = gain2_q15;
+    x0_rescale(d);
+}
+
 bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
 {
     uint32_t sum = 0;
     uint16_t gain2 = d->gain2_q15;
-    if (!d->valid) {
+    if (!x0_valid(d)) {
         return BQ_E_STALE;
     }
-    d->gain2_q15 = 32768u;
-    for (unsigned i = 0; i < d->inputs; i++) {
-        sum += (d->in_use >> i & 1u) != 0u ? x0_cell_mv(d, i) : 0u;
+    rescale(d, 32768u);
+    for (unsigned i = 0; i < d->known.cells; i++) {
+        sum += x0_cell_mv(d, i);
     }
-    d->gain2_q15 = gain2;
+    rescale(d, gain2);
     if (sum == 0u || stack_mv > 110000u || stack_mv * 100u < sum * 97u || stack_mv * 100u > sum * 103u) {
         return BQ_E_RANGE; /* X0-AMB-20 */
     }
-    d->gain2_q15 = (uint16_t)((stack_mv * 32768u + sum / 2u) / sum);
-    for (unsigned i = 0; i < d->inputs; i++) {
+    rescale(d, (uint16_t)((stack_mv * 32768u + sum / 2u) / sum));
+    for (unsigned i = 0; i < d->known.cells; i++) {
         d->calibrated_mv[i] = (uint16_t)x0_cell_mv(d, i);
     }
     return BQ_OK;
@@ -73,9 +88,9 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv)
 
 bool bq769x0_calibration_due(const bq769x0 *d)
 {
-    for (unsigned i = 0; i < d->inputs; i++) {
+    for (unsigned i = 0; i < d->known.cells; i++) {
         int32_t moved = (int32_t)x0_cell_mv(d, i) - (int32_t)d->calibrated_mv[i];
-        if ((d->in_use >> i & 1u) != 0u && (moved > 100 || moved < -100)) {
+        if (moved > 100 || moved < -100) {
             return true;
         }
     }

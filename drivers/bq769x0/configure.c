@@ -1,69 +1,72 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trim and configuration: read, encoded, written, read back (X0-SEQ-11, X0-SEQ-13..19). */
 #include "x0_internal.h"
+#include <string.h>
 
-/* One or two registers, twice the same running: for what is read once and used for ever (X0-SEQ-11). */
-int x0_job_agree(bq769x0 *d, bq769x0_frame *f)
+void bq769x0_init_known(bq769x0 *d, const bq769x0_known *known, const bq_i2c *i2c, const bq_clock *clock)
 {
-    const uint8_t *now = x0_data(d); /* of one register the byte behind it does not change */
-    SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < 4u; f->tries++) {
-        f->i = now[0];
-        f->x = now[1];
-        SEQ_TRY(1, x0_fetch(d, f->reg, f->n));
-        if (f->tries != 0u && f->i == now[0] && f->x == now[1]) {
-            return BQ_OK;
-        }
-    }
-    return BQ_E_IMPLAUSIBLE;
-    SEQ_END;
+    memset(d, 0, sizeof *d);
+    d->known = *known;
+    d->i2c = *i2c;
+    d->clock = *clock;
+    d->segments[0].data = &d->bus[1];
+    d->segments[1].data = &d->bus[2];
+    d->segments[1].read = true;
+    d->top = d->frames;
+    d->top->next = X0_CATCH; /* no job: the end of every failure */
 }
 
-/* The limits as this device holds them, and all of the configuration but SYS_CTRL2. The low nibble of
- * PROTECT3 stays as found (X0-AMB-88). */
-static bq_status encode(bq769x0 *d, unsigned low)
+/* What depends on the trim: limits and the scale of the cells, mV = (code * scale + scale_zero) / 2^18, which
+ * errs by 0.06 mV at most. The low nibble of PROTECT3 stays as found (X0-AMB-88). */
+static bool encode(bq769x0 *d)
 {
-    const bq769x0_config *c = &d->config;
-    bq769x0_achieved *a = &d->achieved;
-    int ov = bq769x0_trip(a->trim, c->ov_mv, false, &a->ov_uv),
-        uv = bq769x0_trip(a->trim, c->uv_mv, true, &a->uv_uv);
-    if ((ov | uv) < 0) { /* one of them is -1 */
-        return BQ_E_NO_CODE;
-    }
-    a->ov_trip = d->want[BQ769X0_OV_TRIP] = (uint8_t)ov;
-    a->uv_trip = d->want[BQ769X0_UV_TRIP] = (uint8_t)uv;
-    a->protect3 = d->want[BQ769X0_PROTECT3] = (uint8_t)((a->protect3 & 0xf0u) | low);
-    d->want[BQ769X0_PROTECT1] = a->current.protect1;
-    d->want[BQ769X0_PROTECT2] = a->current.protect2;
-    d->want[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
-    d->want[BQ769X0_SYS_CTRL1] =
-        c->sensors != 0u ? BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL : BQ769X0_CTRL1_ADC_EN;
-    return BQ_OK;
+    uint8_t *want = d->known.registers;
+    uint32_t gain_uv = BQ769X0_GAIN_UV(d->trim >> 16, d->trim >> 24);
+    int32_t offset_mv = (int8_t)(d->trim >> 8);
+    unsigned ov = bq769x0_trip(gain_uv, d->known.ov_mv - offset_mv, false);
+    unsigned uv = bq769x0_trip(gain_uv, d->known.uv_mv - offset_mv, true);
+    want[BQ769X0_OV_TRIP] = (uint8_t)ov;
+    want[BQ769X0_UV_TRIP] = (uint8_t)uv;
+    want[BQ769X0_PROTECT3] = (uint8_t)((want[BQ769X0_PROTECT3] & 0xf0u) | (d->trim & 0x0fu));
+    d->scale = (gain_uv << 15) / 125u;
+    d->scale_zero = (offset_mv * 2 + 1) * 0x20000;
+    x0_balance(d, 0);
+    return (ov | uv) <= 0xffu;
 }
 
-/* FETs as in d->want, balancing and delay bypass off; then the limits; then converter and counter. SYS_STAT
- * is left alone: what stands there is the business of whoever serves faults. */
+/* FETs as in d->known.registers, balancing and delay bypass off; then the limits; then converter and counter.
+ * SYS_STAT is left alone: what stands there is the business of whoever serves faults. */
 int x0_job_configure(bq769x0 *d, bq769x0_frame *f)
 {
-    bq_status st;
+    uint32_t trim;
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN2, 1));
-    f->x = d->answer;
-    SEQ_TRY(2, x0_push(d, x0_job_agree, BQ769X0_ADCGAIN1, 2));
-    d->achieved.trim = bq769x0_trim_from(d->answer, x0_data(d)[1], f->x);
-    SEQ_TRY(3, x0_push(d, x0_job_agree, BQ769X0_PROTECT3, 1));
-    st = encode(d, d->answer & 0x0fu);
-    if (st != BQ_OK) {
-        return st;
+    d->trim = 0; /* no device has this one */
+    for (;;) {
+        SEQ_TRY(1, X0_FETCH(BQ769X0_ADCGAIN2, 1));
+        f->i = d->answer;
+        SEQ_TRY(2, X0_FETCH(BQ769X0_ADCGAIN1, 2));
+        f->word = (uint32_t)f->i << 24 | (uint32_t)d->answer << 16 | (uint32_t)x0_data(d)[1] << 8;
+        SEQ_TRY(3, X0_FETCH(BQ769X0_PROTECT3, 1));
+        trim = f->word | d->answer;
+        if (d->trim == trim) {
+            break;
+        }
+        d->trim = trim;
+        if (++f->tries == 5u) {
+            return BQ_E_IMPLAUSIBLE;
+        }
     }
-    x0_balance(d, 0);
-    SEQ_TRY(4, x0_set_switches(d));
-    SEQ_TRY(5, x0_set_ctrl2(d));
-    SEQ_TRY(6, x0_set(d, BQ769X0_PROTECT1, 6));
-    d->want[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
-    SEQ_TRY(7, x0_set(d, BQ769X0_SYS_CTRL1, 2));
-    d->cc_ms = d->scrub_ms = d->temp_ms = d->now_ms;
-    d->temp_settled = d->temp_valid = d->temp_held = false;
+    if (!encode(d)) {
+        return BQ_E_NO_CODE;
+    }
+    SEQ_TRY(4, X0_SET_SWITCHES(d));
+    SEQ_TRY(5, X0_SET_CTRL2);
+    SEQ_TRY(6, X0_SET(BQ769X0_PROTECT1, 6));
+    d->known.registers[BQ769X0_SYS_CTRL2] |= d->known.counter;
+    SEQ_TRY(7, X0_SET(BQ769X0_SYS_CTRL1, 2));
+    d->cc_ms = d->temp_ms = d->now_ms;
+    d->temp_settled = d->temp_held = d->suspect = false;
+    d->temp_quality = BQ_Q_CHIP;
     d->state = X0_STATE_READY;
     return BQ_OK;
     SEQ_END;
@@ -73,7 +76,7 @@ bq_status bq769x0_begin_configure(bq769x0 *d)
 {
     bq_status st = x0_begin(d, X0_STATE_NONE, x0_job_configure);
     if (st == BQ_OK) {
-        d->want[BQ769X0_SYS_CTRL2] = 0;
+        d->known.registers[BQ769X0_SYS_CTRL2] = 0;
     }
     return st;
 }

@@ -20,6 +20,8 @@ void x0_die_reset(bq769x0 *d)
     bq769x0_die *t = &d->die;
     t->phase = DIE_REST;
     t->looked = t->known = d->die_hot = t->fault = d->temp_held = false;
+    d->known.registers[BQ769X0_SYS_CTRL1] =
+        d->config.sensors != 0u ? BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL : BQ769X0_CTRL1_ADC_EN;
 }
 
 static bool settled(const bq769x0 *d)
@@ -57,8 +59,9 @@ static void judge(bq769x0 *d)
     const bq769x0_config *c = &d->config;
     const uint16_t *codes = &d->fresh[X0_TS];
     unsigned lowest = 0x3fff;
-    for (unsigned i = 0; i < d->groups; i++) {
-        lowest = codes[i] < lowest ? codes[i] : lowest;
+    for (unsigned i = 0; i < d->known.groups; i++) {
+        unsigned code = codes[i] & 0x3fffu;
+        lowest = code < lowest ? code : lowest;
     }
     t->dc = bq769x0_die_dc((uint16_t)lowest, d->config.die_v25_uv);
     t->looked = true;
@@ -72,8 +75,8 @@ static void judge(bq769x0 *d)
 void x0_die_after_picture(bq769x0 *d)
 {
     bq769x0_die *t = &d->die;
-    bool of_the_die =
-        d->config.sensors == 0u ? d->temp_valid : t->phase == DIE_LOOK && settled(d) && d->valid;
+    bool of_the_die = d->config.sensors == 0u ? d->temp_quality == BQ_Q_VALID
+                                              : t->phase == DIE_LOOK && settled(d) && x0_valid(d);
     if (of_the_die) {
         judge(d);
         if (t->phase == DIE_LOOK) {
@@ -91,7 +94,7 @@ static bool due(const bq769x0 *d)
     const bq769x0_die *t = &d->die;
     uint32_t period_s = d->config.die_check_s != 0u ? d->config.die_check_s : 60u;
     return t->phase == DIE_REST && d->config.sensors != 0u && period_s != BQ769X0_DIE_NEVER &&
-           d->temp_valid && (d->asked != 0u || d->die_hot) &&
+           d->temp_quality == BQ_Q_VALID && (d->asked != 0u || d->die_hot) &&
            (!t->looked || d->now_ms - t->ms >= period_s * 1000u);
 }
 
@@ -103,19 +106,19 @@ int x0_job_die(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     if (d->die_hot && d->balance != 0u) {
         x0_balance(d, 0);
-        SEQ_TRY(1, x0_set_switches(d));
+        SEQ_TRY(1, X0_SET_SWITCHES(d));
     }
     if (due(d)) {
         d->temp_held = true;
         t->hold_ms = d->now_ms;
         t->phase = DIE_RETURN;
-        d->want[BQ769X0_SYS_CTRL1] &= (uint8_t)~BQ769X0_CTRL1_TEMP_SEL;
-        SEQ_TRY(2, x0_set(d, BQ769X0_SYS_CTRL1, 1));
+        d->known.registers[BQ769X0_SYS_CTRL1] &= (uint8_t)~BQ769X0_CTRL1_TEMP_SEL;
+        SEQ_TRY(2, X0_SET(BQ769X0_SYS_CTRL1, 1));
         t->phase = DIE_LOOK;
         d->temp_ms = d->now_ms;
     } else if (t->phase == DIE_RETURN) {
-        d->want[BQ769X0_SYS_CTRL1] |= BQ769X0_CTRL1_TEMP_SEL;
-        SEQ_TRY(3, x0_set(d, BQ769X0_SYS_CTRL1, 1));
+        d->known.registers[BQ769X0_SYS_CTRL1] |= BQ769X0_CTRL1_TEMP_SEL;
+        SEQ_TRY(3, X0_SET(BQ769X0_SYS_CTRL1, 1));
         t->phase = DIE_BACK;
         d->temp_ms = d->now_ms;
     }

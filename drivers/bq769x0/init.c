@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Checks that every user needs, limits of current and delays to codes, and the instance itself. */
+/* From physical units to what the base set is told: wiring, limits and delays in codes. */
 #include "x0_internal.h"
-#include <string.h>
 
 unsigned x0_bits(unsigned mask)
 {
@@ -25,54 +24,60 @@ static bool in_range(const bq769x0_config *c, unsigned groups)
            c->shunt_uohm - 100u <= 100000u - 100u;
 }
 
-bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, const bq_i2c *i2c,
-                  const bq_clock *clock)
+static bq_status limits(const bq769x0_config *c, uint8_t *registers, bq769x0_current_limits *current)
 {
-    bq769x0_current_limits current;
-    unsigned groups = config->inputs / 5u;
-    int ov, uv;
+    bq_status st = bq769x0_protect3(c->ov_delay_s, c->uv_delay_s, &registers[BQ769X0_PROTECT3]);
+    if (st == BQ_OK) {
+        st = bq769x0_current_codes(bq769x0_shunt_uv(c->ocd_ma, c->shunt_uohm), c->ocd_delay_ms,
+                                   bq769x0_shunt_uv(c->scd_ma, c->shunt_uohm), c->scd_delay_us, current);
+        registers[BQ769X0_PROTECT1] = current->protect1;
+        registers[BQ769X0_PROTECT2] = current->protect2;
+    }
+    return st;
+}
+
+bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *known,
+                      bq769x0_current_limits *current)
+{
+    bq769x0_known k = {0};
     bq_status st;
-    if (!wired(config, in_use)) {
+    k.groups = (uint8_t)(c->inputs / 5u);
+    if (!wired(c, in_use)) {
         return BQ_E_CELLS;
     }
-    if (!in_range(config, groups)) {
+    if (!in_range(c, k.groups)) {
         return BQ_E_RANGE;
     }
-    ov = bq769x0_delay_code(BQ769X0_DELAY_OV_S, config->ov_delay_s, &current.ocd_delay_ms); /* overwritten */
-    uv = bq769x0_delay_code(BQ769X0_DELAY_UV_S, config->uv_delay_s, &current.ocd_delay_ms);
-    if ((ov | uv) < 0) { /* one of them is -1 */
-        return BQ_E_NO_CODE;
-    }
-    st = bq769x0_current_codes(bq769x0_shunt_uv(config->ocd_ma, config->shunt_uohm), config->ocd_delay_ms,
-                               bq769x0_shunt_uv(config->scd_ma, config->shunt_uohm), config->scd_delay_us,
-                               &current);
+    st = limits(c, k.registers, current);
     if (st != BQ_OK) {
         return st;
     }
-    memset(d, 0, sizeof *d);
-    d->config = *config;
-    if (config->die_v25_uv == 0u) {
-        d->config.die_v25_uv = 1200000u;
+    k.registers[BQ769X0_SYS_CTRL1] = BQ769X0_CTRL1_ADC_EN;
+    k.sensor = bq769x0_sensor_die;
+    k.sensor_ctx = &c->die_v25_uv;
+    if (c->sensors != 0u) {
+        k.registers[BQ769X0_SYS_CTRL1] = BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL;
+        k.sensor = bq769x0_sensor_thermistor;
+        k.sensor_ctx = c->thermistor;
     }
-    d->achieved.current = current;
-    d->achieved.protect3 = (uint8_t)(uv << 6 | ov << 4);
-    d->in_use = in_use;
-    d->inputs = config->inputs;
-    d->cells = config->cells;
-    d->temps = config->sensors != 0u ? config->sensors : 1u;
-    d->groups = (uint8_t)groups;
-    d->address7 = d->achieved.address7 = config->address7;
-    d->crc = d->achieved.crc = config->crc == BQ769X0_CRC_ON;
-    d->gain2_q15 = 32768u;
-    d->top = d->frames;
-    d->top->catches = true; /* no job: the end of every failure */
-    d->i2c = *i2c;
-    d->clock = *clock;
+    k.registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
+    k.address7 = c->address7;
+    k.crc = c->crc == BQ769X0_CRC_ON;
+    k.first = k.groups == 3u ? 0u : 15u;
+    k.codes = k.groups == 3u ? 20u : c->inputs;
+    k.cells = c->cells;
+    k.invert_current = c->invert_current;
+    k.counter = c->counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
+    k.in_use = (uint16_t)in_use;
+    k.ov_mv = c->ov_mv;
+    k.uv_mv = c->uv_mv;
+    k.shunt_uohm = c->shunt_uohm;
+    *known = k;
     return BQ_OK;
 }
 
-bq_status bq769x0_init_known(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c,
-                             const bq_clock *clock)
+bq_status bq769x0_known_of(const bq769x0_config *config, bq769x0_known *known)
 {
-    return x0_init(d, config, config->wiring, i2c, clock);
+    bq769x0_current_limits current;
+    return x0_known_of(config, config->wiring, known, &current);
 }

@@ -3,90 +3,97 @@
 #include "x0_internal.h"
 #include <string.h>
 
-void x0_invalidate(bq769x0 *d, uint16_t fault)
+/* A transfer of `n` codes. */
+static int fetch_codes(unsigned first, unsigned n)
 {
-    d->valid = d->temp_valid = false;
-    d->faults |= fault;
+    return X0_FETCH(BQ769X0_VC1_HI, 0) + (int)(first << 17) + (int)(n << 25);
 }
 
-/* `n` codes from x0_data() to d->fresh. Upper bits of cells and temperatures are no data (X0-BIT-16). */
+/* `n` codes from x0_data() to d->fresh. */
 static void take_codes(bq769x0 *d, unsigned first, unsigned n)
 {
     const uint8_t *p = x0_data(d);
-    for (n += first; first < n; first++, p += 2) {
-        unsigned code = (unsigned)p[0] << 8 | p[1];
-        if (first != X0_BAT && first != X0_CC) {
-            code &= 0x3fffu;
-        }
-        d->fresh[first] = (uint16_t)code;
+    for (uint16_t *to = &d->fresh[first]; n != 0u; n--, p += 2) {
+        *to++ = (uint16_t)(p[0] * 256u + p[1]);
     }
 }
 
-/* BAT is a quarter of the sum of all codes of the same scan, within 1 (X0-BAT-05). A block read across a
- * publication fails this too: it is then read again. */
-static bool plausible(const bq769x0 *d)
+/* Upper bits of cells and temperatures are no data (X0-BIT-16). BAT is a quarter of the sum of all codes of
+ * the same scan, within 1 (X0-BAT-05). A block read across a publication fails this too: it is then read
+ * again. */
+static bool plausible(bq769x0 *d)
 {
     uint32_t sum = 0;
-    for (unsigned i = 0; i < X0_BAT; i++) {
-        sum += d->fresh[i];
+    for (uint16_t *code = d->fresh; code != &d->fresh[X0_BAT]; code++) {
+        *code &= 0x3fffu;
+        sum += *code;
     }
     return sum != 0u && d->fresh[X0_BAT] + 1u - sum / 4u <= 2u;
 }
 
-/* What is refused leaves the codes of the last good picture alone, and so does another source of the
- * temperatures. */
+/* Cells close up, whatever inputs carry them; another source of the temperatures leaves those alone. */
+static void keep_codes(bq769x0 *d)
+{
+    const uint16_t *from = d->fresh;
+    uint16_t *to = d->code;
+    for (unsigned in_use = d->known.in_use; in_use != 0u; in_use >>= 1) {
+        *to = *from++;
+        to += in_use & 1u;
+    }
+    if (!d->temp_held) {
+        memcpy(&d->code[X0_TEMPS], &d->fresh[X0_TS], 3u * sizeof d->code[0]);
+    }
+}
+
+/* What is refused leaves the codes of the last good picture alone. */
 static void take_picture(bq769x0 *d)
 {
-    bool good = plausible(d);
-    if (!good) {
+    unsigned quality = BQ_Q_CHIP;
+    if (!plausible(d)) {
         x0_bump(&d->stats.implausible);
+    } else if ((d->stat & BQ769X0_STAT_XREADY) == 0u) {
+        quality = BQ_Q_VALID;
+        keep_codes(d);
     }
-    d->valid = good && (d->stat & BQ769X0_STAT_XREADY) == 0u;
-    if (d->valid) {
-        d->measured = true;
-        memcpy(d->code, d->fresh, (d->temp_held ? X0_TS : X0_CC) * sizeof d->code[0]);
-    }
+    d->quality = (uint8_t)quality;
     if (d->now_ms - d->temp_ms >= X0_TEMP_MS) {
         d->temp_settled = true;
     }
-    d->temp_valid = d->valid && d->temp_settled;
+    d->temp_quality = (uint8_t)(d->temp_settled ? quality : BQ_Q_CHIP);
     d->balanced = d->balance;
     d->picture_ms = d->now_ms;
-    d->picture_us = d->now_us;
-    d->sequence++;
 }
 
 /* One fetched result of the coulomb counter. */
 void x0_take_current(bq769x0 *d, uint16_t raw)
 {
     int code = (int16_t)raw;
-    if (d->config.invert_current) {
-        code = code == INT16_MIN ? INT16_MAX : -code;
-    }
-    d->cc_code = (int16_t)code;
+    d->cc_code = d->known.invert_current ? -code : code;
     d->cc_ms = d->now_ms;
     d->current_seen = true;
 }
 
-/* All measurements: one block on the largest part; on smaller ones cells and the rest apart, which costs
- * fewer bytes. */
+/* All measurements: one block on the largest part; on smaller ones the cells come after the rest, which costs
+ * fewer bytes. f->i, f->x: first and number of the codes. */
 int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < 2u; f->tries++) {
-        f->n = 20;
-        if (d->inputs != BQ769X0_INPUTS) {
-            SEQ_TRY(1, x0_fetch(d, BQ769X0_BAT_HI, 10));
-            take_codes(d, X0_BAT, 5);
-            f->n = d->inputs;
+    for (;;) {
+        f->i = d->known.first;
+        for (;;) {
+            SEQ_TRY(1, fetch_codes(f->i, f->i != 0u ? 5u : d->known.codes));
+            take_codes(d, f->i, (unsigned)f->next >> 25);
+            if (f->i == 0u) {
+                break;
+            }
+            f->i = 0;
         }
-        SEQ_TRY(2, x0_fetch(d, BQ769X0_VC1_HI, 2u * f->n));
-        take_codes(d, 0, f->n);
         take_picture(d);
-        if (d->valid) {
+        if (x0_valid(d) || f->tries != 0u) {
             break;
         }
-        SEQ_YIELD(3, x0_wait(d, 0)); /* work enough for one poll */
+        f->tries = 1;
+        SEQ_TRY(2, x0_wait(d, 0)); /* work enough for one poll */
     }
     if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
         x0_take_current(d, d->fresh[X0_CC]);
@@ -99,27 +106,22 @@ int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
 int x0_job_measure(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    d->faults = 0;
-    SEQ_CALL(1, x0_fetch_stat(d));
+    SEQ_CALL(1, X0_FETCH_STAT);
     if (d->result == BQ_OK) {
         d->stat = d->answer & BQ769X0_STAT_CLEAR;
-        if (x0_reached(d, d->data_ms)) {
-            d->data_ms = d->now_ms; /* for ever reached */
+        if (!d->no_data) {
             SEQ_CALL(2, x0_run(d, x0_job_picture));
         }
     }
     if (d->result != BQ_OK) {
-        x0_invalidate(d, BQ_F_COMM);
-        d->scrub_ms = d->now_ms - X0_SCRUB_MS; /* look at the configuration once the bus is back */
+        x0_invalidate(d, BQ_Q_COMM);
+        d->suspect = true; /* look at the configuration once the bus is back */
         return d->result;
     }
     if ((d->stat & BQ769X0_STAT_CC_READY) != 0u) {
         d->cc_ms = d->now_ms; /* also a result that came while no picture counts */
-        d->want[0] = BQ769X0_STAT_CC_READY;
-        SEQ_TRY(3, x0_put(d, BQ769X0_SYS_STAT, 1));
-    }
-    if (d->valid) {
-        x0_bump(&d->stats.scans);
+        d->known.registers[0] = BQ769X0_STAT_CC_READY;
+        SEQ_TRY(3, X0_PUT(BQ769X0_SYS_STAT, 1));
     }
     return BQ_OK;
     SEQ_END;
@@ -134,8 +136,8 @@ bq_status bq769x0_begin_clear(bq769x0 *d)
 {
     bq_status st = x0_begin(d, X0_STATE_READY, x0_job_transfer);
     if (st == BQ_OK) {
-        d->want[0] = d->stat & BQ769X0_STAT_FAULTS;
-        d->top->n = 1; /* of register SYS_STAT */
+        d->known.registers[0] = d->stat & BQ769X0_STAT_FAULTS;
+        d->top->op = X0_PUT(BQ769X0_SYS_STAT, 1);
     }
     return st;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* FETs and balancing switches as the caller wants them (X0-FET-13, X0-SEQ-05, X0-SEQ-38). */
+/* FETs and balancing switches as the caller wants them (X0-FET-13, X0-SEQ-05, X0-SEQ-38..41). */
 #include "x0_internal.h"
 
 /* FETs that may be on while these events stand. Overcurrent also needs CHG off to see the load (X0-LOAD-03).
@@ -16,50 +16,65 @@ unsigned x0_allowed(unsigned events)
     return fets;
 }
 
-/* The switches, then the FETs that f->reg asks for where they are not so yet. None comes on without its
- * limits, which a part that was reset has lost (X0-SEQ-05); one that a fault took back (X0-FET-13) is no
- * longer wanted: the next scan serves the fault. f->n: how it ends, negated. */
+/* Cells (bit n-1 = cell n) to the inputs that carry them (X0-CB-02), and these to the registers. */
+void x0_balance(bq769x0 *d, unsigned cells)
+{
+    unsigned inputs = 0;
+    d->balance = (uint16_t)cells;
+    for (unsigned bit = 1; bit <= d->known.in_use; bit <<= 1) {
+        if ((d->known.in_use & bit) != 0u) {
+            if ((cells & 1u) != 0u) {
+                inputs |= bit;
+            }
+            cells >>= 1;
+        }
+    }
+    d->known.registers[BQ769X0_CELLBAL1] = inputs & 0x1fu;
+    d->known.registers[BQ769X0_CELLBAL1 + 1u] = inputs >> 5 & 0x1fu;
+    d->known.registers[BQ769X0_CELLBAL1 + 2u] = (uint8_t)(inputs >> 10);
+}
+
+/* The switches, then the FETs where they are not so yet. No FET without a valid picture, a known temperature
+ * and a clean SYS_STAT (X0-SEQ-05), nor without its limits, which a part that was reset has lost; one that a
+ * fault took back (X0-FET-13) is no longer wanted: the next scan serves the fault. f->i: those that are to be
+ * on; f->x, f->y: asked for, granted. */
 static int job_apply(bq769x0 *d, bq769x0_frame *f)
 {
-    uint8_t *ctrl2 = &d->want[BQ769X0_SYS_CTRL2];
+    unsigned events = x0_events(d), fets;
+    uint8_t *ctrl2 = &d->known.registers[BQ769X0_SYS_CTRL2];
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_set_switches(d));
-    if ((f->reg & ~*ctrl2) != 0) {
-        SEQ_TRY(2, x0_fetch(d, BQ769X0_SYS_CTRL1, 8));
+    if ((d->quality & d->temp_quality & BQ_Q_VALID) == 0u) {
+        events |= BQ769X0_STAT_XREADY;
+    }
+    f->y = f->i = (uint8_t)(f->x & x0_allowed(events));
+    x0_balance(d, events == 0u ? f->word : 0u);
+    SEQ_TRY(1, X0_SET_SWITCHES(d));
+    if ((f->i & ~*ctrl2) != 0) {
+        SEQ_TRY(2, X0_FETCH(BQ769X0_SYS_CTRL1, 8));
         if (!x0_holds(d, BQ769X0_SYS_CTRL1, 8)) {
-            f->reg &= *ctrl2;
-            f->n = (uint8_t)-BQ_E_VERIFY;
+            f->i &= *ctrl2;
         }
     }
-    if ((*ctrl2 & BQ769X0_CTRL2_FETS) != f->reg) {
-        *ctrl2 = (uint8_t)((*ctrl2 & BQ769X0_CTRL2_CC_EN) | f->reg);
-        SEQ_TRY(3, x0_set_ctrl2(d));
-        if ((f->reg & ~d->answer) != 0) {
-            *ctrl2 &= d->answer;
-            f->n = (uint8_t)-BQ_E_VERIFY;
-        }
+    fets = (*ctrl2 & ~BQ769X0_CTRL2_FETS) | f->i;
+    if (*ctrl2 != fets) {
+        *ctrl2 = (uint8_t)fets;
+        SEQ_TRY(3, X0_SET_CTRL2);
+        *ctrl2 &= (uint8_t)(d->answer | ~BQ769X0_CTRL2_FETS);
     }
-    return -(int)f->n;
+    if ((f->y & ~*ctrl2) != 0) {
+        return BQ_E_VERIFY;
+    }
+    return f->x != f->y ? BQ_E_STATE : BQ_OK;
     SEQ_END;
 }
 
-/* X0-SEQ-05: no FET without a valid picture, a known temperature and a clean SYS_STAT. */
-bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action)
+/* `cells` are no neighbours. */
+bq_status x0_begin_outputs(bq769x0 *d, unsigned fets, unsigned cells)
 {
-    unsigned events = x0_events(d), fets, granted, cells = 0;
-    bq_status st = action != NULL ? x0_begin(d, X0_STATE_READY, job_apply) : BQ_E_ARG;
-    if (st != BQ_OK) {
-        return st;
+    bq_status st = x0_begin(d, X0_STATE_READY, job_apply);
+    if (st == BQ_OK) {
+        d->top->x = (uint8_t)fets;
+        d->top->word = cells;
     }
-    fets = action->charge_on * BQ769X0_CTRL2_CHG_ON + action->discharge_on * BQ769X0_CTRL2_DSG_ON;
-    granted = d->valid && d->temp_valid ? fets & x0_allowed(events) : 0u;
-    d->top->reg = (uint8_t)granted;
-    d->top->n = granted != fets ? (uint8_t)-BQ_E_STATE : 0u;
-    d->asked = (uint16_t)(action->balance[0] & ((1u << d->cells) - 1u));
-    if (d->valid && events == 0u && !d->die_hot) {
-        cells = x0_choose(d, d->asked);
-    }
-    x0_balance(d, cells);
-    d->served_ms = d->now_ms;
-    return BQ_OK;
+    return st;
 }

@@ -15,17 +15,15 @@ static uint8_t judged(const bq769x0 *d)
 /* Whether every cell in use is back inside, with the hysteresis the user asked for (X0-SEQ-30, X0-SEQ-31). */
 static bool cells_cured(const bq769x0 *d)
 {
-    for (unsigned i = 0; i < d->inputs; i++) {
-        if ((d->in_use >> i & 1u) != 0u) {
-            uint32_t mv = x0_cell_mv(d, i);
-            if (((d->held & BQ769X0_STAT_OV) != 0u && mv >= d->config.ov_recover_mv) ||
-                ((d->held & BQ769X0_STAT_UV) != 0u &&
-                 (mv <= d->config.uv_recover_mv || d->code[i] < BQ769X0_UV_MINQUAL))) {
-                return false;
-            }
+    for (unsigned i = 0; i < d->known.cells; i++) {
+        uint32_t mv = x0_cell_mv(d, i);
+        if (((d->held & BQ769X0_STAT_OV) != 0u && mv >= d->config.ov_recover_mv) ||
+            ((d->held & BQ769X0_STAT_UV) != 0u &&
+             (mv <= d->config.uv_recover_mv || d->code[i] < BQ769X0_UV_MINQUAL))) {
+            return false;
         }
     }
-    return d->valid;
+    return x0_valid(d);
 }
 
 /* Whether the cause is gone by the driver's own readings. XREADY comes first and alone: while it stands there
@@ -65,7 +63,8 @@ static uint32_t quiet_ms(const bq769x0 *d)
 /* How long the bits must stay clear: the longest delay that could bring them back, and 500 ms. */
 static uint32_t probation_ms(const bq769x0 *d)
 {
-    uint32_t ov = 1000u << (d->achieved.protect3 >> 4 & 3u), uv = 1000u << (d->achieved.protect3 >> 6);
+    unsigned protect3 = d->known.registers[BQ769X0_PROTECT3];
+    uint32_t ov = 1000u << (protect3 >> 4 & 3u), uv = 1000u << (protect3 >> 6);
     uint32_t ms = (d->held & OVERCURRENT) != 0u ? d->achieved.current.ocd_delay_ms : 500u;
     if ((d->held & BQ769X0_STAT_OVRD_ALERT) != 0u) {
         ms = longer(ms, 1500u);
@@ -127,7 +126,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     if ((d->stat & BQ769X0_STAT_FAULTS & (t->probation ? 0xffu : ~(unsigned)d->held)) != 0u) {
         /* the register byte of a read carries no CRC (X0-I2C-16): a new bit counts when it is read twice */
-        SEQ_TRY(1, x0_fetch_stat(d));
+        SEQ_TRY(1, X0_FETCH_STAT);
         d->stat &= d->answer;
     }
     f->i = d->stat & BQ769X0_STAT_FAULTS;
@@ -137,7 +136,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
         SEQ_TRY(2, x0_run(d, x0_job_off));
     }
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
-        x0_invalidate(d, 0); /* X0-XRDY-04 */
+        x0_invalidate(d, BQ_Q_CHIP); /* X0-XRDY-04 */
         if (t->strikes > 2u) {
             d->faults |= BQ_F_DEFECTIVE;
             SEQ_TRY(3, x0_run(d, x0_job_ship));
@@ -154,7 +153,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
         return BQ_OK;
     }
     if (load_due(d)) {
-        SEQ_TRY(5, x0_fetch(d, BQ769X0_SYS_CTRL1, 1));
+        SEQ_TRY(5, X0_FETCH(BQ769X0_SYS_CTRL1, 1));
         t->load_ms = d->now_ms;
         t->loads = (d->answer & BQ769X0_CTRL1_LOAD_PRESENT) != 0u ? 0u
                    : t->loads < 4u                                ? (uint8_t)(t->loads + 1u)
@@ -165,9 +164,9 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
         return BQ_OK;
     }
     if (d->now_ms - t->held_ms > quiet_ms(d) + EDGE_MS) {
-        d->want[0] = d->stat & judged(d); /* exactly what was read as set (X0-BIT-09) */
-        if (d->want[0] != 0u) {
-            SEQ_TRY(6, x0_put(d, BQ769X0_SYS_STAT, 1));
+        d->known.registers[0] = d->stat & judged(d); /* exactly what was read as set (X0-BIT-09) */
+        if (d->known.registers[0] != 0u) {
+            SEQ_TRY(6, X0_PUT(BQ769X0_SYS_STAT, 1));
         }
         t->probation = true;
         t->held_ms = d->now_ms;
@@ -188,10 +187,10 @@ void bq769x0_unlock(bq769x0 *d)
 int x0_job_off(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    d->want[BQ769X0_SYS_CTRL2] &= (uint8_t)(x0_allowed(x0_events(d)) | ~BQ769X0_CTRL2_FETS);
-    SEQ_CALL(1, x0_set_ctrl2(d));
+    d->known.registers[BQ769X0_SYS_CTRL2] &= (uint8_t)(x0_allowed(x0_events(d)) | ~BQ769X0_CTRL2_FETS);
+    SEQ_CALL(1, X0_SET_CTRL2);
     f->x = d->result != BQ_OK;
-    SEQ_TRY(2, x0_set_switches(d));
+    SEQ_TRY(2, X0_SET_SWITCHES(d));
     return f->x == 0u ? BQ_OK : BQ_E_VERIFY;
     SEQ_END;
 }

@@ -52,6 +52,8 @@ bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i
                        const bq_clock *clock)
 {
     bq_status st;
+    bq769x0_known known;
+    bq769x0_current_limits current;
     if (d == NULL || config == NULL || !complete(i2c, gpio, clock)) {
         return BQ_E_ARG;
     }
@@ -59,16 +61,26 @@ bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i
     if (st == BQ_OK) {
         uint16_t in_use =
             config->wiring != 0u ? config->wiring : bq769x0_wiring(config->inputs, config->cells);
-        st = x0_init(d, config, in_use, i2c, clock);
+        st = x0_known_of(config, in_use, &known, &current);
     }
     if (st != BQ_OK) {
         return st;
     }
+    bq769x0_init_known(d, &known, i2c, clock);
+    d->config = *config;
+    if (config->die_v25_uv == 0u) {
+        d->config.die_v25_uv = 1200000u;
+    }
+    if (config->sensors == 0u) {
+        d->known.sensor_ctx = &d->config.die_v25_uv;
+    }
+    d->achieved.current = current;
+    d->gain2_q15 = 32768u;
     if (gpio != NULL) {
         d->gpio = *gpio;
     }
     if (config->balance_across_groups) {
-        d->apart = borders(d->in_use);
+        d->known.apart = borders(d->known.in_use);
     }
     return BQ_OK;
 }
@@ -104,9 +116,24 @@ bool bq769x0_alert_pending(const bq769x0 *d)
     return d->gpio.ops == NULL || d->gpio.ops->read(d->gpio.ctx, BQ_LINE_ALERT, &level) != BQ_OK || level;
 }
 
-const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d)
+bq769x0_trim x0_trim(const bq769x0 *d)
 {
-    return &d->achieved;
+    return bq769x0_trim_from((uint8_t)(d->trim >> 16), (uint8_t)(d->trim >> 8), (uint8_t)(d->trim >> 24));
+}
+
+const bq769x0_achieved *bq769x0_get_achieved(bq769x0 *d)
+{
+    bq769x0_achieved *a = &d->achieved;
+    const uint8_t *registers = d->known.registers;
+    a->trim = x0_trim(d);
+    a->ov_trip = registers[BQ769X0_OV_TRIP];
+    a->uv_trip = registers[BQ769X0_UV_TRIP];
+    a->protect3 = registers[BQ769X0_PROTECT3];
+    a->ov_uv = bq769x0_cell_uv(a->trim, bq769x0_ov_code(a->ov_trip));
+    a->uv_uv = bq769x0_cell_uv(a->trim, bq769x0_uv_code(a->uv_trip));
+    a->address7 = d->known.address7;
+    a->crc = d->known.crc;
+    return a;
 }
 
 unsigned bq769x0_config_warnings(const bq769x0_config *c)

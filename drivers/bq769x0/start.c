@@ -14,7 +14,7 @@ void x0_drive(const bq769x0 *d, bq_line line, bool level)
 uint32_t x0_first_ms(const bq769x0 *d)
 {
     static const uint16_t first_ms[3] = {280, 445, 885};
-    return first_ms[d->groups - 1u];
+    return first_ms[d->known.groups - 1u];
 }
 
 /* A rising edge on TS1 of 2.5 ms, then 12 ms before the first write (X0-SEQ-01, X0-SEQ-02). */
@@ -22,13 +22,13 @@ int x0_job_boot(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     x0_drive(d, BQ_LINE_AFE_BOOT, false);
-    SEQ_YIELD(1, x0_wait(d, 1000u));
+    SEQ_TRY(1, x0_wait(d, 1000u));
     x0_drive(d, BQ_LINE_AFE_BOOT, true);
     d->data_ms = d->now_ms + 11u + x0_first_ms(d); /* the clock drops fractions */
     d->watch.fresh_boot = true;
-    SEQ_YIELD(2, x0_wait(d, 2500u));
+    SEQ_TRY(2, x0_wait(d, 2500u));
     x0_drive(d, BQ_LINE_AFE_BOOT, false);
-    SEQ_YIELD(3, x0_wait(d, 12000u));
+    SEQ_TRY(3, x0_wait(d, 12000u));
     return BQ_OK;
     SEQ_END;
 }
@@ -36,7 +36,7 @@ int x0_job_boot(bq769x0 *d, bq769x0_frame *f)
 /* Four bytes as they are; a CRC part sends data, crc, data, crc. */
 static bool looks_like_crc(bq769x0 *d, uint8_t first)
 {
-    uint8_t head[2] = {(uint8_t)(d->address7 * 2u + 1u), first};
+    uint8_t head[2] = {(uint8_t)(d->known.address7 * 2u + 1u), first};
     return bq_crc8(0, head, 2) == x0_data(d)[1] && bq_crc8(0, &x0_data(d)[2], 1) == x0_data(d)[3];
 }
 
@@ -45,19 +45,20 @@ static bool looks_like_crc(bq769x0 *d, uint8_t first)
 static int job_probe_crc(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_fetch(d, BQ769X0_OV_TRIP, 4));
+    SEQ_TRY(1, X0_FETCH(BQ769X0_OV_TRIP, 4));
     f->x = looks_like_crc(d, d->answer) ? 1u : 0u;
-    SEQ_TRY(2, x0_fetch(d, BQ769X0_ADCGAIN1, 4));
+    SEQ_TRY(2, X0_FETCH(BQ769X0_ADCGAIN1, 4));
     if (f->x != (looks_like_crc(d, d->answer) ? 1u : 0u)) {
-        d->want[BQ769X0_CC_CFG] = 0x00;
-        SEQ_CALL(3, x0_set(d, BQ769X0_CC_CFG, 1));
+        d->known.registers[BQ769X0_CC_CFG] = 0x00;
+        SEQ_CALL(3, X0_SET(BQ769X0_CC_CFG, 1));
         f->x = d->result != BQ_OK;
-        d->want[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
-        SEQ_CALL(4, x0_set(d, BQ769X0_CC_CFG, 1));
+        d->known.registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
+        SEQ_CALL(4, X0_SET(BQ769X0_CC_CFG, 1));
         f->x |= (uint8_t)(d->result != BQ_OK);
     }
-    d->crc = d->achieved.crc = f->x != 0u;
-    if ((d->config.crc == BQ769X0_CRC_ON && !d->crc) || (d->config.crc == BQ769X0_CRC_OFF && d->crc)) {
+    d->known.crc = f->x != 0u;
+    if ((d->config.crc == BQ769X0_CRC_ON && !d->known.crc) ||
+        (d->config.crc == BQ769X0_CRC_OFF && d->known.crc)) {
         return BQ_E_CONFIG; /* X0-SEQ-10 */
     }
     return BQ_OK;
@@ -65,11 +66,11 @@ static int job_probe_crc(bq769x0 *d, bq769x0_frame *f)
 }
 
 /* Asks at 0x08 or 0x18 with a plain read that disturbs nothing (X0-SEQ-07). */
-static void ask(bq769x0 *d, uint8_t address7)
+static int ask(bq769x0 *d, uint8_t address7)
 {
-    d->address7 = d->achieved.address7 = address7;
-    d->crc = d->achieved.crc = false;
-    x0_once(d, BQ769X0_SYS_STAT, 1, true);
+    d->known.address7 = address7;
+    d->known.crc = false;
+    return X0_FETCH_STAT | X0_ONCE;
 }
 
 static int job_identify(bq769x0 *d, bq769x0_frame *f)
@@ -90,7 +91,7 @@ static int job_identify(bq769x0 *d, bq769x0_frame *f)
         if (d->result != BQ_E_NACK || f->tries == 1u) {
             x0_recover(d);
         }
-        SEQ_YIELD(3, x0_wait(d, d->watch.fresh_boot ? 5000u : 1000u)); /* 50 ms after a boot (X0-SEQ-03) */
+        SEQ_TRY(3, x0_wait(d, d->watch.fresh_boot ? 5000u : 1000u)); /* 50 ms after a boot (X0-SEQ-03) */
     }
     return BQ_E_NOT_FOUND;
     SEQ_END;
@@ -101,7 +102,7 @@ static int job_identify(bq769x0 *d, bq769x0_frame *f)
 static int job_past(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_CTRL1, 8));
+    SEQ_TRY(1, X0_FETCH(BQ769X0_SYS_CTRL1, 8));
     f->x = 0;
     f->i = 0xff;
     for (unsigned i = 0; i < 8u; i++) {
@@ -114,7 +115,7 @@ static int job_past(bq769x0 *d, bq769x0_frame *f)
     f->x = x0_data(d)[5] == 0xacu && x0_data(d)[6] == 0x97u && x0_data(d)[7] == 0u;
     if (!d->watch.fresh_boot && (f->x != 0u || (d->answer & BQ769X0_CTRL1_ADC_EN) == 0u)) {
         d->data_ms = d->now_ms + 12u + x0_first_ms(d) + X0_SCAN_MS;
-        SEQ_YIELD(2, x0_wait(d, 12000u));
+        SEQ_TRY(2, x0_wait(d, 12000u));
     }
     return BQ_OK;
     SEQ_END;
@@ -142,28 +143,33 @@ static int job_find(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
+/* Inputs that read as a cell. */
+static unsigned carrying(const bq769x0 *d)
+{
+    unsigned inputs = 0;
+    for (unsigned i = 0; i < d->config.inputs; i++) {
+        inputs |= (d->fresh[i] >= BQ769X0_UV_MINQUAL ? 1u : 0u) << i;
+    }
+    return inputs;
+}
+
 /* The first picture, and whether the inputs are wired as configured (X0-SEQ-04, X0-SEQ-12). */
 static int job_first(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     while (!x0_reached(d, d->data_ms)) {
-        SEQ_YIELD(1, x0_wait(d, 5000u));
+        SEQ_TRY(1, x0_wait(d, 5000u));
     }
     d->temp_settled = d->watch.fresh_boot; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
     for (f->tries = 0; f->tries < 5u; f->tries++) {
         SEQ_TRY(2, x0_run(d, x0_job_picture));
-        f->x = (uint8_t)!d->valid;
-        for (unsigned i = 0; i < d->inputs; i++) {
-            bool carries = d->code[i] >= BQ769X0_UV_MINQUAL, should = ((unsigned)d->in_use >> i & 1u) != 0u;
-            f->x |= (uint8_t)(carries != should);
-        }
-        if (f->x == 0u) {
-            d->watch.good_ms = d->now_ms;
+        x0_count_picture(d);
+        if (x0_valid(d) && carrying(d) == d->known.in_use) {
             return BQ_OK;
         }
-        SEQ_YIELD(3, x0_wait(d, 260000u));
+        SEQ_TRY(3, x0_wait(d, 260000u));
     }
-    d->valid = false;
+    d->quality = BQ_Q_CHIP;
     return d->measured ? BQ_E_CELLS : BQ_E_STALE;
     SEQ_END;
 }
@@ -173,15 +179,15 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
 static int job_take_over(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_TRY(1, x0_fetch(d, BQ769X0_SYS_CTRL2, 1));
-    d->want[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->answer & BQ769X0_CTRL2_FETS : 0u;
+    SEQ_TRY(1, X0_FETCH(BQ769X0_SYS_CTRL2, 1));
+    d->known.registers[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->answer & BQ769X0_CTRL2_FETS : 0u;
     SEQ_TRY(2, x0_run(d, x0_job_configure));
+    x0_configured(d);
     d->state = X0_STATE_NONE; /* not before the first picture */
-    d->counting.ms = d->now_ms;
-    SEQ_TRY(3, x0_fetch_stat(d));
-    d->want[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
-    if (d->want[0] != 0u) {
-        SEQ_TRY(4, x0_put(d, BQ769X0_SYS_STAT, 1));
+    SEQ_TRY(3, X0_FETCH_STAT);
+    d->known.registers[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
+    if (d->known.registers[0] != 0u) {
+        SEQ_TRY(4, X0_PUT(BQ769X0_SYS_STAT, 1));
     }
     SEQ_TRY(5, x0_run(d, job_first));
     d->state = X0_STATE_READY;
@@ -194,9 +200,9 @@ int x0_job_start(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     d->state = X0_STATE_NONE;
-    d->valid = d->measured = d->temp_valid = d->watch.fresh_boot = d->trouble.probation = d->trouble.locked =
-        false;
-    d->stat = d->held = d->trouble.strikes = d->want[BQ769X0_SYS_CTRL1] = 0;
+    x0_invalidate(d, BQ_Q_CHIP);
+    d->measured = d->watch.fresh_boot = d->trouble.probation = d->trouble.locked = false;
+    d->stat = d->held = d->trouble.strikes = 0;
     d->faults = 0;
     x0_balance(d, 0);
     x0_die_reset(d);
@@ -207,7 +213,7 @@ int x0_job_start(bq769x0 *d, bq769x0_frame *f)
         return BQ_OK;
     }
     f->x = (uint8_t)-d->result;
-    d->want[BQ769X0_SYS_CTRL2] = 0;
+    d->known.registers[BQ769X0_SYS_CTRL2] = 0;
     SEQ_CALL(3, x0_run(d, x0_job_off));
     return -(int)f->x;
     SEQ_END;

@@ -6,7 +6,7 @@
  *
  * A job is named where it is begun or called and nowhere else, so a linker keeps only the jobs that something
  * in the program can begin. Base set: engine.c, transfer.c, configure.c, measure.c, readings.c,
- * sample.c, balance.c, outputs.c.
+ * outputs.c, balance.c.
  */
 #ifndef X0_INTERNAL_H
 #define X0_INTERNAL_H
@@ -17,98 +17,82 @@
 enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 
 #define X0_TRIES 3u
+#define X0_ROUNDS 4u
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-/* where in d->fresh and d->code, behind the cells: BAT, TS1.., and in d->fresh the coulomb counter */
+/* where in d->fresh, behind the inputs: BAT, TS1.., the coulomb counter; and in d->code, behind the cells:
+ * TS1.. */
 #define X0_BAT 15u
 #define X0_TS 16u
 #define X0_CC 19u
+#define X0_TEMPS 15u
+
+/* What a job waits for beside the point where it goes on: a transfer of `n` registers from `reg` on. */
+#define X0_CATCH 0x100 /* goes on whatever came of it: d->result tells */
+#define X0_READ 0x200
+#define X0_CHECK 0x400 /* written, read back, compared */
+#define X0_TWICE 0x800 /* a read of one or two registers is repeated until two running agree */
+#define X0_ONCE 0x1000 /* one try only */
+#define X0_PUT(reg, n) ((int)((unsigned)(n) << 24 | (reg) << 16))
+#define X0_FETCH(reg, n) (X0_PUT(reg, n) | X0_READ)
+#define X0_SET(reg, n) (X0_PUT(reg, n) | X0_CHECK)
+#define X0_AGREE(reg, n) (X0_FETCH(reg, n) | X0_TWICE)
+#define X0_FETCH_STAT X0_FETCH(BQ769X0_SYS_STAT, 1)
+#define X0_SET_CTRL2 X0_SET(BQ769X0_SYS_CTRL2, 1)
+#define X0_SET_SWITCHES(d) X0_SET(BQ769X0_CELLBAL1, (d)->known.groups)
 
 /* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
  * compiler refuses doubles. Point 0 is the beginning. */
 #define SEQ_BEGIN(f)                                                                                         \
-    switch ((f)->at) {                                                                                       \
+    switch ((uint8_t)(f)->next) {                                                                            \
     default:
 #define SEQ_END                                                                                              \
     }                                                                                                        \
     return BQ_E_STATE
-/* Goes on when what `start` started has ended. */
-#define SEQ_YIELD(point, start)                                                                              \
+/* Goes on when the transfer, the child or the wait has ended; a failure is the failure of this job too. */
+#define SEQ_TRY(point, what)                                                                                 \
     do {                                                                                                     \
-        (start);                                                                                             \
-        return (point);                                                                                      \
+        return (what) | (point);                                                                             \
     case (point):;                                                                                           \
     } while (0)
-/* Runs a child; its failure is the failure of this job too. */
-#define SEQ_TRY(point, child) SEQ_YIELD(point, child)
-/* Runs a child and goes on whatever came of it: d->result tells. */
-#define SEQ_CALL(point, child)                                                                               \
-    do {                                                                                                     \
-        (child);                                                                                             \
-        return (point) + X0_CATCHES;                                                                         \
-    case (point):;                                                                                           \
-    } while (0)
-#define X0_CATCHES 0x80
+/* The same, and goes on whatever came of it: d->result tells. */
+#define SEQ_CALL(point, what) SEQ_TRY(point, (what) | X0_CATCH)
 
 /* engine.c */
 bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job);
-bq769x0_frame *x0_push(bq769x0 *d, bq769x0_job job, unsigned reg, unsigned n);
-void x0_run(bq769x0 *d, bq769x0_job job);
-void x0_wait(bq769x0 *d, uint32_t us);
+void x0_push(bq769x0 *d, bq769x0_job job, int op);
+void x0_pause(bq769x0 *d, uint32_t us);
 void x0_tick(bq769x0 *d);
 void x0_bump(uint32_t *counter);
 
-/* transaction.c: one, as the frame of a transfer describes it */
-#define X0_READING 0x80u /* in its n, beside the number of registers */
-void x0_send(bq769x0 *d, const bq769x0_frame *f);
-bq_status x0_judge(bq769x0 *d, const bq769x0_frame *f);
-
-/* transfer.c: children of a job. Reads arrive in x0_data(), what is written lies in d->want. */
-void x0_fetch(bq769x0 *d, unsigned reg, unsigned n);
-void x0_put(bq769x0 *d, unsigned reg, unsigned n);
-void x0_set(bq769x0 *d, unsigned reg, unsigned n); /* written, read back, compared */
-void x0_fetch_stat(bq769x0 *d);
-void x0_set_ctrl2(bq769x0 *d);
-void x0_set_switches(bq769x0 *d);
+/* transfer.c: reads arrive in x0_data(), what is written lies in d->want. */
 bool x0_holds(bq769x0 *d, unsigned reg, unsigned n);
 void x0_recover(bq769x0 *d);
 int x0_job_transfer(bq769x0 *d, bq769x0_frame *f);
-int x0_job_set(bq769x0 *d, bq769x0_frame *f);
 
 /* configure.c */
 int x0_job_configure(bq769x0 *d, bq769x0_frame *f);
-int x0_job_agree(bq769x0 *d, bq769x0_frame *f);
-
-/* init.c */
-bq_status x0_init(bq769x0 *d, const bq769x0_config *config, uint16_t in_use, const bq_i2c *i2c,
-                  const bq_clock *clock);
-unsigned x0_bits(unsigned mask);
 
 /* measure.c */
 int x0_job_measure(bq769x0 *d, bq769x0_frame *f);
 int x0_job_picture(bq769x0 *d, bq769x0_frame *f);
 void x0_take_current(bq769x0 *d, uint16_t raw);
-void x0_invalidate(bq769x0 *d, uint16_t fault);
-
-/* readings.c */
-uint32_t x0_cell_mv(const bq769x0 *d, unsigned input);
-uint8_t x0_quality(const bq769x0 *d, bool measured, unsigned bad, bool doubtful);
-void x0_read_cell(const bq769x0 *d, bq_cell_reading *c, unsigned input);
-void x0_read_temp(const bq769x0 *d, bq_temp_reading *t, uint16_t code);
-
-/* sample.c */
-uint16_t x0_flags(unsigned events);
 
 /* outputs.c */
 unsigned x0_allowed(unsigned events);
-
-/* balance.c */
-unsigned x0_choose(const bq769x0 *d, unsigned asked);
 void x0_balance(bq769x0 *d, unsigned cells);
+bq_status x0_begin_outputs(bq769x0 *d, unsigned fets, unsigned cells);
 
 /* beyond the base set */
-void x0_once(bq769x0 *d, unsigned reg, unsigned n, bool reading);
+uint32_t x0_cell_mv(const bq769x0 *d, unsigned cell);
+bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *known,
+                      bq769x0_current_limits *current);
+bq769x0_trim x0_trim(const bq769x0 *d);
+unsigned x0_bits(unsigned mask);
+void x0_rescale(bq769x0 *d);
+void x0_configured(bq769x0 *d);
+void x0_count_picture(bq769x0 *d);
 void x0_drive(const bq769x0 *d, bq_line line, bool level);
 uint32_t x0_first_ms(const bq769x0 *d);
 void x0_count_charge(bq769x0 *d);
@@ -127,6 +111,37 @@ int x0_job_scrub(bq769x0 *d, bq769x0_frame *f);
 int x0_job_reload(bq769x0 *d, bq769x0_frame *f);
 int x0_job_ship(bq769x0 *d, bq769x0_frame *f);
 int x0_job_die(bq769x0 *d, bq769x0_frame *f);
+
+#define X0_TURN_BITS 12u /* a set of cells is bled for 4.1 s, then another one */
+
+/* Neighbours of these cells, whatever inputs are shorted between them (X0-CB-06). */
+static inline unsigned x0_beside(unsigned cells, unsigned apart)
+{
+    return (cells << 1 & ~apart) | (cells & ~apart) >> 1;
+}
+
+/* Children of a job: another job, and time. */
+static inline int x0_run(bq769x0 *d, bq769x0_job job)
+{
+    x0_push(d, job, 0);
+    return 0;
+}
+
+static inline int x0_wait(bq769x0 *d, uint32_t us)
+{
+    x0_pause(d, us);
+    return 0;
+}
+
+static inline void x0_invalidate(bq769x0 *d, unsigned quality)
+{
+    d->quality = d->temp_quality = (uint8_t)quality;
+}
+
+static inline bool x0_valid(const bq769x0 *d)
+{
+    return d->quality == BQ_Q_VALID;
+}
 
 /* Events of SYS_STAT that stand: not released, or just read. */
 static inline unsigned x0_events(const bq769x0 *d)

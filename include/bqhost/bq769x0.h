@@ -13,6 +13,7 @@
 
 #include "bqhost/afe.h"
 #include "bqhost/bq769x0_convert.h"
+#include "bqhost/bq769x0_known.h"
 #include "bqhost/field.h"
 #include "bqhost/hal.h"
 #include "bqhost/thermistor.h"
@@ -67,7 +68,7 @@ typedef struct bq769x0_config {
     uint32_t die_v25_uv;  /**< voltage of the die sensor at 25 C, 1100000..1300000; 0 = 1200000 */
 } bq769x0_config;
 
-/** What the chip really does, known after bring-up. */
+/** What the chip really does, known after bring-up; `current` is of bq769x0_init(). */
 typedef struct bq769x0_achieved {
     bq769x0_trim trim;
     int32_t ov_uv, uv_uv; /**< thresholds of a cell */
@@ -133,7 +134,7 @@ bq_status bq769x0_begin_scan(bq769x0 *d);
  * and sleep are ignored. Before a FET comes on the configuration is read and compared (X0-SEQ-05). Of
  * neighbours that are asked for, one and the other are bled in turns of 4.1 s, and where balance_max is less
  * than asked, the turn goes round: every cell that is asked for gets its share. No cell is bled while a fault
- * stands or the die is too hot. Returns also BQ_E_ARG (NULL).
+ * stands, the die is too hot or a temperature is not known. Returns also BQ_E_ARG (NULL).
  * Ends with BQ_OK only if every FET that was asked for is commanded on. BQ_E_STATE: one had to stay off (a
  * fault stands, no valid picture, a temperature not known); the sample tells which. All else was carried out,
  * FETs that may be on are on. BQ_E_VERIFY: the registers do not hold their values, or the part took a FET
@@ -186,7 +187,7 @@ bq_status bq769x0_calibrate(bq769x0 *d, uint32_t stack_mv);
 /** True when a cell has moved by more than 100 mV since the last calibration (X0-ADC-17). */
 bool bq769x0_calibration_due(const bq769x0 *d);
 
-const bq769x0_achieved *bq769x0_get_achieved(const bq769x0 *d);
+const bq769x0_achieved *bq769x0_get_achieved(bq769x0 *d);
 const bq769x0_charge *bq769x0_get_charge(const bq769x0 *d);
 void bq769x0_charge_reset(bq769x0 *d);
 
@@ -209,31 +210,63 @@ extern const bq_field_table bq769x0_config_fields;
 
 /* ---- the base set -------------------------------------------------------------------------------
  * For a firmware with little flash: measuring, protecting, balancing. A program that uses only these
- * functions, bq769x0_begin_apply(), bq769x0_poll() and bq769x0_sample() links nothing of bring-up by probing,
- * fault recovery, scrub, die temperature, charge counting, SHIP. What is then left to the caller: the part
- * must be booted; after a fault it is he who decides when to clear; after a reset of the part (bus errors,
- * no valid picture, BQ_E_VERIFY of an apply that asks for FETs) he configures again. FETs stay off while a
- * fault bit stands.
+ * functions and bq769x0_poll() links nothing of bring-up by probing, fault recovery, scrub, die temperature
+ * beside thermistors, charge counting, SHIP, samples for the pack controller. What is then left to the
+ * caller: the part must be booted; after a fault it is he who decides when to clear; after a reset of the
+ * part (bus errors, no valid picture, BQ_E_VERIFY of outputs that ask for FETs) he configures again. FETs
+ * stay off while a fault bit stands.
  */
 
-/** As bq769x0_init() for a part whose address, CRC option and wiring are given in `config` and true; the
- * pointers are not null and `inputs` is 5, 10 or 15. Touches no bus. BQ_OK; BQ_E_CELLS, BQ_E_RANGE (shunt,
- * sensors), BQ_E_NO_CODE, BQ_E_CONFIG as there, and the instance is then as before. Not used here: recovery
- * thresholds, settle time, frozen_scans, balance_timer_s, balance_across_groups, keep_fets, die_.... */
-bq_status bq769x0_init_known(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c,
-                             const bq_clock *clock);
+/** Sets up the instance for a part that is known (bq769x0_known.h). `known`, `i2c` and `clock` are copied;
+ * what they point to must outlive the instance. Touches no bus. Nothing is checked here: what the macros of
+ * bq769x0_known.h made was checked by the compiler. No pointer is null. */
+void bq769x0_init_known(bq769x0 *d, const bq769x0_known *known, const bq_i2c *i2c, const bq_clock *clock);
+/** Describes a part by a configuration in physical units, for limits that the compiler does not know.
+ * `inputs` is 5, 10 or 15; address, CRC option and wiring are given and true; with sensors = 0 `config` must
+ * outlive the instance and hold die_v25_uv. BQ_OK; BQ_E_CELLS, BQ_E_RANGE (shunt, sensors), BQ_E_NO_CODE,
+ * BQ_E_CONFIG as bq769x0_init(), and `*known` is then as before. Not used: recovery thresholds, settle time,
+ * frozen_scans, balance_timer_s, balance_max, balance_across_groups, keep_fets, the other die_.... */
+bq_status bq769x0_known_of(const bq769x0_config *config, bq769x0_known *known);
 /** Begins configuration of a part that is awake: trim, limits in this device's codes, FETs and balancing off,
  * converters on; every register read back. Ends with BQ_OK; BQ_E_NO_CODE (a voltage limit this device cannot
  * hold); BQ_E_VERIFY; BQ_E_IMPLAUSIBLE (the trim reads differently each time); a bus error. Legal in every
  * state; BQ_E_BUSY while a job runs. */
 bq_status bq769x0_begin_configure(bq769x0 *d);
-/** Begins one measurement in three transactions. The faults that SYS_STAT reports are in the next sample and
- * stand until a later measurement reads them as gone. Ends with BQ_OK or a bus error (the sample is then not
- * valid, with BQ_F_COMM). BQ_E_STATE before configuration. */
+/** Begins one measurement: three transactions, four on parts of less than 15 inputs. The faults that SYS_STAT
+ * reports stand until a later measurement reads them as gone. Ends with BQ_OK, also when the picture was
+ * refused (readings carry BQ_Q_CHIP), or a bus error (BQ_Q_COMM). BQ_E_STATE before configuration. */
 bq_status bq769x0_begin_measure(bq769x0 *d);
 /** Begins to clear exactly the fault bits that the last measurement read; an event that comes in between is
  * kept. BQ_OK, BQ_E_BUSY, BQ_E_STATE; ends with BQ_OK or a bus error. */
 bq_status bq769x0_begin_clear(bq769x0 *d);
+/** Begins to switch FETs (BQ769X0_CTRL2_CHG_ON, BQ769X0_CTRL2_DSG_ON) and balancing outputs (`cells`, bit n-1
+ * = cell n), verified; ends as bq769x0_begin_apply(). Of neighbours that are asked for, one and the other are
+ * bled in turns of 4.1 s. Nothing is bled and no FET comes on without a valid picture and a known
+ * temperature, nor while a fault stands, but the FET that leads out of OV or UV. BQ_OK, BQ_E_BUSY,
+ * BQ_E_STATE. */
+bq_status bq769x0_begin_outputs(bq769x0 *d, unsigned fets, unsigned cells);
+
+/** Cell `cell`, counted from 0 at the lowest potential: mV, quality, module 0. Not VALID, and `mv` is the
+ * last good value: BQ_Q_COMM, BQ_Q_CHIP, or no bit at all before the first picture. Not VALID: BQ_Q_RANGE,
+ * the end of the converter; BQ_Q_OPEN_WIRE, below 0x0518, where the part itself ignores an input. VALID with
+ * BQ_Q_OUTSIDE: not within 2 to 5 V. */
+void bq769x0_read_cell(const bq769x0 *d, unsigned cell, bq_cell_reading *c);
+/** Sensor `sensor`, from 0 on, by the function in bq769x0_known. Not VALID: BQ_Q_COMM, BQ_Q_CHIP (also for
+ * the first 2.25 s after configuration), BQ_Q_SENSOR when that function says so. VALID with BQ_Q_OUTSIDE: not
+ * within 0.3 to 3 V. */
+void bq769x0_read_temp(const bq769x0 *d, unsigned sensor, bq_temp_reading *t);
+
+/** What is read beside cells and temperatures. */
+typedef struct bq769x0_reading {
+    uint32_t age_ms;         /**< of the picture, at most */
+    uint32_t current_age_ms; /**< UINT32_MAX: never measured */
+    int32_t current_ma;      /**< positive charges */
+    bool current_valid; /**< younger than 600 ms, and within +-31990 codes, where the counter saturates */
+    uint8_t events;     /**< fault bits of SYS_STAT (BQ769X0_STAT_...) that stand */
+    uint16_t balancing; /**< bit n-1: cell n was bled until this picture */
+} bq769x0_reading;
+/** Reads the clock, not the bus. */
+void bq769x0_read(bq769x0 *d, bq769x0_reading *reading);
 
 /** Fills the interface the super-loop uses. Its sleep is SHIP: the part forgets its configuration, and a host
  * that lives on REGOUT loses its supply. Its wake is the same as start. */

@@ -25,6 +25,9 @@ typedef struct bq769x0_trim {
     int8_t offset_mv; /**< two's complement */
 } bq769x0_trim;
 
+/** Gain from ADCGAIN1 (0x50) and ADCGAIN2 (0x59); reserved bits are ignored (X0-ADC-04). */
+#define BQ769X0_GAIN_UV(reg50, reg59) (365u + (((reg50) & 0x0cu) << 1) + ((unsigned)(reg59) >> 5))
+
 /** Trim from ADCGAIN1 (0x50), ADCOFFSET (0x51) and ADCGAIN2 (0x59); reserved bits are ignored (X0-ADC-04). */
 bq769x0_trim bq769x0_trim_from(uint8_t reg50, uint8_t reg51, uint8_t reg59);
 
@@ -47,9 +50,9 @@ bq_status bq769x0_uv_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *tri
 bq_status bq769x0_ov_trip(bq769x0_trim trim, uint16_t mv, uint8_t *trip, int32_t *achieved_uv);
 bq_status bq769x0_uv_trip(bq769x0_trim trim, uint16_t mv, uint8_t *trip, int32_t *achieved_uv);
 
-/** The same with one function: the trip code of an OV limit, or of a UV limit (`under`); -1: no code, nothing
- * written. */
-int bq769x0_trip(bq769x0_trim trim, uint16_t mv, bool under, int32_t *achieved_uv);
+/** The same with one function: the trip code of an OV limit, or of a UV limit (`under`) that lies `above_mv`
+ * above the offset; above 255: no code. */
+unsigned bq769x0_trip(uint32_t gain_uv, int32_t above_mv, bool under);
 
 /** Delays of the protections: in the unit of the name. */
 typedef enum bq769x0_delay {
@@ -89,7 +92,7 @@ bq_status bq769x0_protect3(uint8_t ov_s, uint8_t uv_s, uint8_t *reg);
 
 /** Current in mA of a coulomb counter code: code x 8.44 uV / shunt, rounded to the nearest (X0-CC-13).
  * `shunt_uohm` is not 0. */
-int32_t bq769x0_current_ma(int16_t code, uint32_t shunt_uohm);
+int32_t bq769x0_current_ma(int32_t code, uint32_t shunt_uohm);
 
 /** Thermistor resistance in ohms of a code (X0-TS-05). BQ_OK; BQ_E_RANGE for an open input (code 8639 and
  * above). */

@@ -8,20 +8,20 @@
 #define BQHOST_BQ769X0_STATE_H
 
 #define BQ769X0_INPUTS 15u
-#define BQ769X0_FRAMES 8u
+#define BQ769X0_FRAMES 7u
 #define BQ769X0_BUFFER 82u /* address, register, 40 registers with CRC */
 
 struct bq769x0;
 struct bq769x0_frame;
-/* A job: goes on where its frame says; > 0 = where to go on next time, else how it ended. */
+/* A job: goes on where its frame says; > 0 = what it waits for and where to go on then, else how it ended. */
 typedef int (*bq769x0_job)(struct bq769x0 *d, struct bq769x0_frame *f);
 
 typedef struct bq769x0_frame {
     bq769x0_job job;
-    uint8_t at;          /* where the job goes on */
-    bool catches;        /* it looks at the result of its child itself */
-    uint8_t reg, n;      /* its arguments */
-    uint8_t tries, i, x; /* its variables */
+    int next;      /* what the job returned last; 0 = its beginning */
+    int op;        /* of a transfer: what is transferred */
+    uint32_t word; /* its variables */
+    uint8_t tries, i, x, y;
 } bq769x0_frame;
 
 /* What is far from the beginning of the instance is reached through a pointer of its own. */
@@ -59,58 +59,60 @@ typedef struct bq769x0_die {
 typedef struct bq769x0_counting {
     bq769x0_charge charge;
     uint32_t ms;  /* windows are counted up to here */
-    int16_t code; /* result counted last */
+    int32_t code; /* result counted last */
 } bq769x0_counting;
 
 /* In this order because on ARMv6-M only the first 32 bytes (64 of half-words, 128 of words) are one
  * instruction away, and what lies beyond 256 costs most. Not to be copied or moved once set up. */
 typedef struct bq769x0 {
     uint8_t state;
-    bool busy;         /* a transfer is under way */
-    bool valid;        /* the picture counts */
-    bool measured;     /* there was a picture */
-    bool temp_valid;   /* the temperatures count */
-    bool temp_settled; /* ... are of the source selected now */
-    bool temp_held;    /* ... and stay as they are: the source is another one for a while */
-    bool current_seen; /* there was a result of the coulomb counter */
-    bool crc;
-    bool die_hot; /* no balancing: the die is too hot */
-    uint8_t stat; /* SYS_STAT as read last */
-    uint8_t held; /* SYS_STAT bits that are not released yet */
-    uint8_t address7;
-    uint8_t groups; /* of five inputs */
-    uint8_t inputs;
-    uint8_t cells, temps; /* in a sample */
-    uint8_t answer;       /* first register of the last read */
-    uint8_t want[12];     /* registers 0x00..0x0b as they should be; [0] = bits to clear */
-    bq_status result;     /* of the job that ended last */
-    bq_status transfer;   /* of the transfer that ended last */
-    uint16_t in_use;      /* inputs that carry cells */
-    uint16_t balance;     /* cells whose switch is commanded */
-    uint16_t balanced;    /* ... during the last picture */
-    uint16_t faults;      /* BQ_F_... of the picture */
-    uint16_t asked;       /* cells the caller wants bled */
-    uint16_t apart;       /* cells whose lower neighbour may be bled together with them */
-    int16_t cc_code;
-    uint16_t gain2_q15;        /* GAIN2 in units of 1/32768 */
+    uint8_t quality;           /* of the picture: BQ_Q_VALID, or why it does not count */
+    uint8_t temp_quality;      /* of its temperatures */
+    bool temp_settled;         /* temperatures are of the source selected now */
+    bool temp_held;            /* ... and stay as they are: the source is another one for a while */
+    bool no_data;              /* the measurement registers do not count yet */
+    bool current_seen;         /* there was a result of the coulomb counter */
+    bool suspect;              /* the configuration is to be looked at: the bus was disturbed */
+    uint8_t stat;              /* SYS_STAT as read last */
+    uint8_t held;              /* SYS_STAT bits that are not released yet */
+    uint8_t answer;            /* first register of the last read */
+    bool die_hot;              /* no balancing: the die is too hot */
+    bq769x0_known known;       /* .registers: as they should be; [0] = bits to clear */
+    uint16_t balance;          /* cells whose switch is commanded */
+    uint16_t balanced;         /* ... during the last picture */
     struct bq769x0_frame *top; /* frame of the job that runs */
-    uint32_t now_us, now_ms, rest_us;
-    uint32_t due_us; /* end of a wait, or when a transfer should have ended */
-    uint32_t cc_ms, temp_ms, served_ms;
-    uint32_t data_ms; /* from when on the measurement registers count */
-    uint32_t scrub_ms;
-    bq_i2c_segment segments[2];
+    int32_t transfer;          /* bq_status of the transfer under way, or that ended last */
+    int32_t result;            /* bq_status of the job that ended last */
+    uint32_t now_us, now_ms;
+    uint32_t whole_us; /* clock at the beginning of now_ms */
+    uint32_t due_us;   /* end of a wait, or when a transfer should have ended */
+    uint32_t cc_ms, temp_ms;
+    int32_t cc_code;
+    uint32_t scale;     /* of a cell: mV of a code in units of 1/2^18 */
+    int32_t scale_zero; /* ... and of code 0, with half a mV for rounding */
+    uint32_t trim;
+    uint32_t picture_ms;
     bq_i2c i2c;
-    bq769x0_achieved achieved;
-    uint32_t picture_ms, picture_us, sequence;
     bq_clock clock;
-    bq769x0_config config;
+    /* from here on more than 128 bytes away */
+    bq_i2c_segment segments[2];
     bq_link_stats stats;
     uint8_t
         bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
+    uint16_t code[18];       /* of the last good picture: cells from the lowest on, [15] TS1.. */
     uint16_t fresh[20];      /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
-    uint16_t code[19];       /* of the last good picture: inputs, BAT, TS1..TS3 */
     bq769x0_frame frames[BQ769X0_FRAMES + 1u];
+    /* beyond the base set */
+    uint16_t faults;    /* BQ_F_... of the picture */
+    bool measured;      /* there was a picture */
+    uint16_t gain2_q15; /* GAIN2 in units of 1/32768 */
+    uint32_t sequence;
+    uint16_t asked;   /* cells the caller wants bled */
+    uint32_t data_ms; /* from when on the measurement registers count */
+    uint32_t served_ms;
+    uint32_t scrub_ms;
+    bq769x0_config config;
+    bq769x0_achieved achieved;
     bq_gpio gpio;
     bq769x0_trouble trouble;
     bq769x0_watch watch;

@@ -5,7 +5,7 @@
 bq769x0_trim bq769x0_trim_from(uint8_t reg50, uint8_t reg51, uint8_t reg59)
 {
     bq769x0_trim trim;
-    trim.gain_uv = (uint16_t)(365u + ((reg50 & 0x0cu) << 1) + ((reg59 & 0xe0u) >> 5));
+    trim.gain_uv = (uint16_t)BQ769X0_GAIN_UV(reg50, reg59);
     trim.offset_mv = (int8_t)reg51;
     return trim;
 }
@@ -15,9 +15,9 @@ int32_t bq769x0_cell_uv(bq769x0_trim trim, uint16_t code)
     return (int32_t)code * (int32_t)trim.gain_uv + (int32_t)trim.offset_mv * 1000;
 }
 
-int32_t bq769x0_current_ma(int16_t code, uint32_t shunt_uohm)
+int32_t bq769x0_current_ma(int32_t code, uint32_t shunt_uohm)
 {
-    int32_t nv = (int32_t)code * 8440;
+    int32_t nv = code * 8440;
     uint32_t size = nv < 0 ? (uint32_t)-nv : (uint32_t)nv;
     int32_t ma = (int32_t)((size + shunt_uohm / 2u) / shunt_uohm);
     return nv < 0 ? -ma : ma;

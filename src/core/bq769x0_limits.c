@@ -3,25 +3,15 @@
 #include "bqhost/bq769x0_convert.h"
 
 /* OV: the largest trip with 0x2008 + 16 trip not above the request. UV: the smallest with 0x1000 + 16 trip
- * not below it. The request itself must lie inside the range, in whole codes on its safe side. */
-int bq769x0_trip(bq769x0_trim trim, uint16_t mv, bool under, int32_t *achieved_uv)
+ * not below it: one above the largest that is below. */
+unsigned bq769x0_trip(uint32_t gain_uv, int32_t above_mv, bool under)
 {
-    int32_t most = 0x0ff7, base = 0x2008, up = 0; /* in codes, from `base` */
-    int32_t uv = ((int32_t)mv - trim.offset_mv) * 1000;
-    int32_t code;
+    uint32_t uv = (uint32_t)above_mv * 1000u, first = 0x2008; /* below 0: above every limit */
     if (under) {
-        most = 0x0ff0;
-        base = 0x1000;
-        up = 15;
-        uv += trim.gain_uv - 1;
+        uv--;
+        first = 0x1000 - 16;
     }
-    code = uv / (int32_t)trim.gain_uv - base;
-    if (code < 0 || code > most) {
-        return -1;
-    }
-    code = (code + up) >> 4;
-    *achieved_uv = bq769x0_cell_uv(trim, (uint16_t)(base + (code << 4)));
-    return code;
+    return (uv / gain_uv - first) >> 4;
 }
 
 /* Delays double from code 1 on; code 0 has one of its own. */

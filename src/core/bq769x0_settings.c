@@ -48,11 +48,12 @@ bq_status bq769x0_uv_trip_datasheet(bq769x0_trim trim, uint16_t mv, uint8_t *tri
 
 static bq_status safe_trip(bq769x0_trim trim, uint16_t mv, bool under, uint8_t *trip, int32_t *achieved_uv)
 {
-    int code = bq769x0_trip(trim, mv, under, achieved_uv);
-    if (code < 0) {
+    unsigned code = bq769x0_trip(trim.gain_uv, mv - trim.offset_mv, under);
+    if (code > 0xffu) {
         return BQ_E_NO_CODE;
     }
     *trip = (uint8_t)code;
+    *achieved_uv = bq769x0_cell_uv(trim, under ? bq769x0_uv_code(*trip) : bq769x0_ov_code(*trip));
     return BQ_OK;
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The smallest firmware around a bq769x0, to see what a linker keeps: the board is one register that answers
- * everything. Without WHOLE the base set: a part whose address and CRC are known is configured from physical
- * limits with read-back; then it is measured, its cells bled, its FETs switched, its faults reported and
- * cleared on request. With WHOLE everything the driver can do. Only linked, never run.
+ * everything. Without WHOLE the base set: a part that is known is configured with read-back, its limits in
+ * codes; then it is measured, its cells bled, its FETs switched, its faults reported and cleared on request.
+ * With WHOLE everything the driver can do. Only linked, never run.
  */
 #include "bqhost/bq769x0.h"
 
@@ -35,16 +35,17 @@ static const bq_i2c_ops i2c_ops = {i2c_start, i2c_poll, NULL};
 static const bq_i2c i2c = {&i2c_ops, NULL};
 static const bq_clock tick = {now_us, NULL};
 
+static bq769x0 driver;
+
+#ifdef WHOLE
 /* The sensor of this board, 0.7 degrees exact from -20 to 80: data of the user, not of the library. */
 static const uint32_t ohms[] = {67889, 41978, 26870, 17753, 12074, 8434, 6034, 4408, 3283, 2487, 1915};
 static const bq_thermistor sensor = {ohms, 11, -200, 100};
-
-static bq769x0 driver;
 static bq_cell_reading cells[15];
 static bq_temp_reading temps[3];
 static bq_module_reading modules[1];
-static bq_sample sample = {cells, temps, modules, 15, 3, 1, 0, 0, 0, 0, 0, 0, 0, false};
 static bq_action action;
+static bq_sample sample = {cells, temps, modules, 15, 3, 1, 0, 0, 0, 0, 0, 0, 0, false};
 
 static const bq769x0_config config = {.inputs = 15,
                                       .cells = 15,
@@ -64,6 +65,25 @@ static const bq769x0_config config = {.inputs = 15,
                                       .scd_ma = 100000,
                                       .ocd_delay_ms = 320,
                                       .scd_delay_us = 100};
+#else
+/* The same sensor in codes. */
+#define CODE(ohms) BQ769X0_TS_CODE(ohms)
+static const uint16_t codes[] = {CODE(67889), CODE(41978), CODE(26870), CODE(17753), CODE(12074), CODE(8434),
+                                 CODE(6034),  CODE(4408),  CODE(3283),  CODE(2487),  CODE(1915)};
+static const bq769x0_code_table table = {codes, 11, -200, 100};
+static const bq769x0_known known = {BQ769X0_PART(15, 0x7fffu),
+                                    .address7 = 0x08,
+                                    .crc = true,
+                                    .registers =
+                                        BQ769X0_REGISTERS(BQ769X0_THERMISTORS, BQ769X0_SHUNT_MV(50000, 1000),
+                                                          320, BQ769X0_SHUNT_MV(100000, 1000), 100, 2, 4),
+                                    .counter = BQ769X0_CTRL2_CC_EN,
+                                    .ov_mv = 4250,
+                                    .uv_mv = 2800,
+                                    .shunt_uohm = 1000,
+                                    .sensor = bq769x0_sensor_codes,
+                                    .sensor_ctx = &table};
+#endif
 
 static bool done(bq_status begun)
 {
@@ -90,16 +110,40 @@ static bool updated(void)
            bq769x0_calibration_due(&driver) && bq769x0_calibrate(&driver, *board) == BQ_OK &&
            bq769x0_alert_pending(&driver);
 }
+static bool used(void)
+{
+    if (bq769x0_sample(&driver, &sample) != BQ_OK) {
+        return false;
+    }
+    *board =
+        sample.cells[0].mv + (uint32_t)sample.current_ma + (uint32_t)sample.temps[0].dc + modules[0].faults;
+    action.charge_on = action.discharge_on = *board != 0u;
+    action.balance[0] = *board;
+    return done(bq769x0_begin_apply(&driver, &action));
+}
 #else
 static bool started(void)
 {
-    return bq769x0_init_known(&driver, &config, &i2c, &tick) == BQ_OK &&
-           done(bq769x0_begin_configure(&driver));
+    bq769x0_init_known(&driver, &known, &i2c, &tick);
+    return done(bq769x0_begin_configure(&driver));
 }
 
 static bool updated(void)
 {
     return done(bq769x0_begin_measure(&driver));
+}
+
+static bool used(void)
+{
+    bq_cell_reading cell;
+    bq_temp_reading temp;
+    bq769x0_reading r;
+    bq769x0_read(&driver, &r);
+    bq769x0_read_cell(&driver, 0, &cell);
+    bq769x0_read_temp(&driver, 0, &temp);
+    *board = cell.mv + cell.quality + (uint32_t)r.current_ma + (uint32_t)temp.dc;
+    return done(bq769x0_begin_outputs(&driver, *board, *board)) &&
+           (r.events == 0u || done(bq769x0_begin_clear(&driver)));
 }
 #endif
 
@@ -108,19 +152,7 @@ int main(void)
     if (!started()) {
         return 1;
     }
-    while (updated() && bq769x0_sample(&driver, &sample) == BQ_OK) {
-        *board = sample.cells[0].mv + (uint32_t)sample.current_ma + (uint32_t)sample.temps[0].dc +
-                 modules[0].faults;
-        action.charge_on = action.discharge_on = *board != 0u;
-        action.balance[0] = *board;
-        if (!done(bq769x0_begin_apply(&driver, &action))) {
-            return 1;
-        }
-#ifndef WHOLE
-        if (modules[0].faults != 0u && *board != 0u && !done(bq769x0_begin_clear(&driver))) {
-            return 1;
-        }
-#endif
+    while (updated() && used()) {
     }
     return 1;
 }
