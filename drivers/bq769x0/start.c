@@ -174,8 +174,9 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
-/* A part that was found: FETs on only if they are to be kept, configuration, SYS_STAT cleared (XREADY takes
- * seconds, in the fault service), first picture. */
+/* A part that was found: FETs on only if they are to be kept, configuration, SYS_STAT cleared (X0-SEQ-18),
+ * first picture. What a running part had flagged is left to the fault service, so that a reset of the host
+ * releases nothing; so is XREADY, which takes seconds. */
 static int job_take_over(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
@@ -185,7 +186,9 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
     x0_configured(d);
     d->state = X0_STATE_NONE; /* not before the first picture */
     SEQ_TRY(3, X0_FETCH_STAT);
-    d->known.registers[0] = d->answer & BQ769X0_STAT_CLEAR & (uint8_t)~BQ769X0_STAT_XREADY;
+    d->known.registers[0] =
+        d->answer &
+        (d->watch.fresh_boot ? BQ769X0_STAT_CLEAR & ~(unsigned)BQ769X0_STAT_XREADY : BQ769X0_STAT_CC_READY);
     if (d->known.registers[0] != 0u) {
         SEQ_TRY(4, X0_PUT(BQ769X0_SYS_STAT, 1));
     }
