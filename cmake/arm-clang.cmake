@@ -20,7 +20,8 @@ execute_process(COMMAND sh -c "arm-none-eabi-gcc -E -Wp,-v -xc - </dev/null 2>&1
     OUTPUT_VARIABLE headers OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(CMAKE_C_FLAGS_INIT "-mcpu=${BQHOST_CPU} -mthumb -mfloat-abi=soft -isystem ${headers}")
 find_program(BQHOST_OBJCOPY NAMES llvm-objcopy-19 llvm-objcopy arm-none-eabi-objcopy REQUIRED)
-set(BQHOST_IMAGE_LINK -fuse-ld=lld -nostdlib -Wl,--icf=all)
+# Measured on hv-f405: the running pointers and counters that strength reduction adds to loops cost 1.8 KB.
+set(BQHOST_IMAGE_LINK -fuse-ld=lld -nostdlib -Wl,--icf=all -Wl,-mllvm,-disable-lsr)
 set(BQHOST_IMAGE_LIBS ${libc} ${libgcc})
 # clang's -Os is meant for speed too: its image would not fit.
 set(CMAKE_C_FLAGS_MINSIZEREL "-Oz -DNDEBUG -flto" CACHE STRING "")
