@@ -11,7 +11,7 @@ static const bq_field fields[] = {
     U(normal_max_mv),   U(normal_min_mv),    U(cov_delay_us),     U(cuv_delay_us),    U(ot_c[0]),
     U(ot_c[1]),         U(ot_delay_ms),      U(spi_hz),           U(balance_timer_s), U(balance_settle_ms),
     U(scrub_period_ms), U(wire_limit_mv),    U(user[0]),          U(user[1]),         U(user[2]),
-    U(user[3]),         B(allow_partial),    B(gpai_pins),        U(frozen_scans),
+    U(user[3]),         B(allow_partial),    B(gpai_pins),        U(frozen_scans),    B(warm_start),
 };
 
 const bq_field_table bq76pl536_config_fields = {fields, (uint16_t)(sizeof fields / sizeof fields[0]), 0x7653,

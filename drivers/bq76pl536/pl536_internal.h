@@ -51,8 +51,9 @@ enum { PL_STATE_NONE, PL_STATE_READY, PL_STATE_ASLEEP };
 /* Every job: PL_JOB_<NAME> is its number, pl_job_<name>() its function. */
 #define PL_JOBS(JOB) \
     JOB(READ, read) JOB(WRITE, write) JOB(COMMAND, command) JOB(SHADOW, shadow) JOB(CLEAR, clear) \
-    JOB(START, start) JOB(BRINGUP, bringup) JOB(DISCOVER, discover) JOB(HEIGHT, height) \
-    JOB(ASSIGN, assign) JOB(VALIDATE, validate) JOB(CRC_OFF_PASS, crc_off_pass) \
+    JOB(START, start) JOB(COLD, cold) JOB(WARM, warm) JOB(WARM_DEVICE, warm_device) \
+    JOB(BRINGUP, bringup) JOB(DISCOVER, discover) JOB(HEIGHT, height) JOB(ASSIGN, assign) \
+    JOB(VALIDATE, validate) JOB(CRC_OFF_PASS, crc_off_pass) \
     JOB(CONFIGURE, configure) JOB(BROADCAST, broadcast) JOB(ESTABLISH, establish) \
     JOB(ACKNOWLEDGE, acknowledge) JOB(LINES, lines) JOB(SCAN, scan) JOB(CONVERT, convert) \
     JOB(READ_IN, read_in) JOB(REMEASURE, remeasure) JOB(AFTERCARE, aftercare) JOB(SWEEP, sweep) \
@@ -97,7 +98,8 @@ bq_status pl_wait(bq76pl536 *d, uint32_t us);
 bq_status pl_send_read(bq76pl536 *d, unsigned dev, unsigned reg, unsigned count);
 bq_status pl_send_write(bq76pl536 *d, unsigned dev, unsigned reg, unsigned val);
 bq_status pl_send_raw(bq76pl536 *d, size_t length);
-/* Judges the packet that ended last, a read, and counts what is wrong with it. */
+/* Judges the packet that ended last, a read; pl_reply() counts what is wrong with it. */
+bq_status pl_answer(const bq76pl536 *d);
 bq_status pl_reply(bq76pl536 *d);
 bq_status pl_begin(bq76pl536 *d, uint8_t job, unsigned dev);
 void pl_tick(bq76pl536 *d);

@@ -99,12 +99,14 @@ bq_status pl_send_write(bq76pl536 *d, unsigned dev, unsigned reg, unsigned val)
     return d->transfer == BQ_OK ? pl_send_raw(d, length) : BQ_PENDING;
 }
 
+bq_status pl_answer(const bq76pl536 *d)
+{
+    return d->transfer != BQ_OK ? d->transfer : bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc);
+}
+
 bq_status pl_reply(bq76pl536 *d)
 {
-    if (d->transfer != BQ_OK) {
-        return d->transfer;
-    }
-    bq_status st = bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc);
+    const bq_status st = pl_answer(d);
     if (st == BQ_E_NO_ANSWER) {
         bump(&d->stats.no_answers);
     } else if (st == BQ_E_CRC) {

@@ -124,8 +124,7 @@ bq_status pl_job_arrival(bq76pl536 *d, bq76pl536_frame *f)
 /* What a device without an address would say to a read of DEVICE_STATUS at 0x00: anything but a dead bus. */
 static bool somebody_at_zero(bq76pl536 *d)
 {
-    return d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) == BQ_OK &&
-           pl_data(d)[0] != 0x00u && pl_data(d)[0] != 0xffu;
+    return pl_answer(d) == BQ_OK && pl_data(d)[0] != 0x00u && pl_data(d)[0] != 0xffu;
 }
 
 /*
@@ -187,7 +186,7 @@ bq_status pl_job_discover(bq76pl536 *d, bq76pl536_frame *f)
             d->diagnosis.extra_device = true;
             return BQ_E_EXTRA_DEVICE;
         }
-        if (d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) != BQ_E_CRC) {
+        if (d->transfer == BQ_OK && pl_answer(d) != BQ_E_CRC) {
             break;
         }
     }
@@ -220,25 +219,11 @@ bq_status pl_job_bringup(bq76pl536 *d, bq76pl536_frame *f)
     SEQ_END;
 }
 
-/* PL-SEQ-01. */
-bq_status pl_job_start(bq76pl536 *d, bq76pl536_frame *f)
+/* From a stack in an unknown state to a configured one: power-up, discovery, configuration, self-test. */
+bq_status pl_job_cold(bq76pl536 *d, bq76pl536_frame *f)
 {
     SEQ_BEGIN(f)
-    d->state = PL_STATE_NONE;
     d->power_ms = d->now_ms;
-    for (f->n = 1; f->n <= d->config.devices; f->n++) {
-        pl_dev(d, f->n)->faults = 0;
-        pl_dev(d, f->n)->flags &= PL_DEV_MEASURED;
-        pl_dev(d, f->n)->resets = 0;
-        pl_dev(d, f->n)->open_wire = 0;
-        pl_dev(d, f->n)->wire_count = 0;
-    }
-    pl_drive(d, BQ_LINE_VPP, false);
-    pl_drive(d, BQ_LINE_CONV, false);
-    pl_drive(d, BQ_LINE_AFE_POWER, true);
-    if (d->spi.ops->set_clock != NULL && d->spi.ops->set_clock(d->spi.ctx, d->config.spi_hz) != BQ_OK) {
-        return BQ_E_CLOCK;
-    }
     SEQ_WAIT(d, f, PL_POWER_UP_MS * 1000u);
     SEQ_CALL(d, f, PL_JOB_BRINGUP, 0, 0, 0);
     if (d->result != BQ_OK && d->found == 0u && d->gpio.ops != NULL &&
@@ -257,6 +242,53 @@ bq_status pl_job_start(bq76pl536 *d, bq76pl536_frame *f)
     }
     SEQ_CALL(d, f, PL_JOB_SELF_TEST, 0, 0,
              0); /* what it finds is reported; measuring is possible all the same */
+    if (d->config.warm_start && !d->config.crc_off && d->found == d->config.devices) {
+        /* the mark that the next life looks for */
+        SEQ_SEND(f, pl_send_write(d, BQ76PL536_ADDR_BROADCAST, BQ76PL536_CB_TIME, d->config.balance_timer_s));
+    }
+    return BQ_OK;
+    SEQ_END;
+}
+
+static void forget_findings(bq76pl536 *d)
+{
+    d->state = PL_STATE_NONE;
+    for (unsigned n = 1; n <= d->config.devices; n++) {
+        pl_dev(d, n)->faults = 0;
+        pl_dev(d, n)->flags &= PL_DEV_MEASURED;
+        pl_dev(d, n)->resets = 0;
+        pl_dev(d, n)->open_wire = 0;
+        pl_dev(d, n)->wire_count = 0;
+    }
+    pl_drive(d, BQ_LINE_VPP, false);
+    pl_drive(d, BQ_LINE_CONV, false);
+    pl_drive(d, BQ_LINE_AFE_POWER, true);
+}
+
+/* Only the first start may find a running stack: a later one has a reason that a reset has to cure. */
+static bool may_be_running(bq76pl536 *d)
+{
+    const bool first = !d->started;
+
+    d->started = true;
+    return first && d->config.warm_start && !d->config.crc_off;
+}
+
+/* PL-SEQ-01. */
+bq_status pl_job_start(bq76pl536 *d, bq76pl536_frame *f)
+{
+    SEQ_BEGIN(f)
+    forget_findings(d);
+    if (d->spi.ops->set_clock != NULL && d->spi.ops->set_clock(d->spi.ctx, d->config.spi_hz) != BQ_OK) {
+        return BQ_E_CLOCK;
+    }
+    d->result = BQ_E_STATE;
+    if (may_be_running(d)) {
+        SEQ_CALL(d, f, PL_JOB_WARM, 0, 0, 0);
+    }
+    if (d->result != BQ_OK) {
+        SEQ_TRY(d, f, PL_JOB_COLD, 0, 0, 0);
+    }
     d->state = PL_STATE_READY;
     d->scrub_next = 1;
     d->scrub_ms = d->now_ms;

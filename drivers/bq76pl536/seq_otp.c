@@ -131,6 +131,13 @@ bq_status pl_job_otp(bq76pl536 *d, bq76pl536_frame *f)
     if (!pl_valid(d, f->dev) || pl_dev(d, f->dev)->gpai_mv < VBAT_MIN_MV) {
         return finish(d, BQ_E_VOLTAGE);
     }
+    if (d->config.warm_start) { /* no mark: a next life that finds the procedure cut off resets the device */
+        pl_dev(d, f->dev)->flags &= (uint16_t)~PL_DEV_CB_TIME;
+        SEQ_CALL(d, f, PL_JOB_WRITE, f->dev, BQ76PL536_CB_TIME, 0);
+        if (d->result != BQ_OK) {
+            return finish(d, d->result);
+        }
+    }
     SEQ_CALL(d, f, PL_JOB_COMMAND, f->dev, BQ76PL536_SHDW_CTRL, BQ76PL536_SHDW_REFRESH); /* 12-02 */
     SEQ_CALL(d, f, PL_JOB_READ, f->dev, BQ76PL536_GROUP3_FIRST, BQ76PL536_GROUP3_COUNT);
     f->x = d->result == BQ_OK && blank(d) ? 1u : 0u;

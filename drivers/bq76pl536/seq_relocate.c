@@ -90,8 +90,7 @@ bq_status pl_job_relocate(bq76pl536 *d, bq76pl536_frame *f)
     }
     d->diagnosis.broken_hop = 0;
     SEQ_SEND(f, pl_send_read(d, BQ76PL536_ADDR_NONE, BQ76PL536_DEVICE_STATUS, 1)); /* 13-07 */
-    if (d->transfer == BQ_OK && bq76pl536_packet_check(d->tx, d->rx, d->length, d->crc) == BQ_OK &&
-        pl_data(d)[0] != 0u) {
+    if (pl_answer(d) == BQ_OK && pl_data(d)[0] != 0u) {
         SEQ_TRY(d, f, PL_JOB_BRINGUP, 0, 0, 0);
     }
     return BQ_OK;

@@ -67,7 +67,22 @@ typedef struct bq76pl536_config {
     bool gpai_pins; /**< measure the GPAI pins instead of the brick voltage (no check of the brick then) */
     uint8_t frozen_scans; /**< identical results of one device in so many scans count as stopped; 0 = not
                              watched */
+    bool warm_start; /**< the first start may adopt a stack that still runs instead of resetting it; false:
+                        never. Without effect together with crc_off */
 } bq76pl536_config;
+
+/** What became of the attempt to adopt a running stack (config.warm_start). */
+typedef enum bq76pl536_warm {
+    BQ76PL536_WARM_NONE,       /**< there was none */
+    BQ76PL536_WARM_ADOPTED,    /**< adopted: nothing was reset */
+    BQ76PL536_WARM_UNHEARD,    /**< a device gave no sound answer at its own address */
+    BQ76PL536_WARM_STRANGER,   /**< something answers at address 0 or above the top device */
+    BQ76PL536_WARM_SETTINGS,   /**< a register of a device does not hold what the configuration wants */
+    BQ76PL536_WARM_UNFINISHED, /**< a device lacks the mark of a bring-up that came to its end */
+    BQ76PL536_WARM_BALANCING,  /**< outputs of a device could not be switched off by broadcast */
+    BQ76PL536_WARM_FLAGS,      /**< a device has flags, a parity result, or is not ready */
+    BQ76PL536_WARM_SELF_TEST   /**< the self-test behind the adoption failed */
+} bq76pl536_warm;
 
 /** What the driver learned about the stack beyond a bq_sample. Device numbers count from 1; 0 = none. */
 typedef struct bq76pl536_diagnosis {
@@ -83,6 +98,9 @@ typedef struct bq76pl536_diagnosis {
     bool user_readonly;    /**< USER1..USER4 do not keep what is written (PL-AMB-100) */
     bool chain_skipped;    /**< the last self-test left out a chain: line missing or already high */
     uint32_t spi_hz;       /**< clock in use */
+    bq76pl536_warm warm;   /**< how the attempt went; every value but NONE and ADOPTED led to a bring-up with
+                                resets */
+    uint8_t warm_device;   /**< the device that decided it; 0 = none, or address 0 */
 } bq76pl536_diagnosis;
 
 /* struct bq76pl536 and bq76pl536_device: complete, so that the caller can own them; members are private */
@@ -143,6 +161,21 @@ bq_status bq76pl536_wait(bq76pl536 *d, uint32_t timeout_us);
  * BQ_E_DEFECTIVE: parity that neither rewriting nor refreshing cures. Broken or stuck FAULT/ALERT chains are
  * reported (BQ_F_CHAIN, diagnosis) without failing. If nothing answers and the board has BQ_LINE_AFE_POWER,
  * it is cycled once. After a failure only start is legal.
+ *
+ * With config.warm_start the first start after init looks first whether the stack still runs as an earlier
+ * life of the host left it: the supply of the devices does not depend on the host, and a reset of all
+ * devices, the discovery and one protection delay cost a stack of 32 more than a second without protection by
+ * the host. Balancing outputs are switched off by broadcast before anything else. Then every device must
+ * answer at its own address, hold all 12 registers of group 3, ADC_CONTROL and IO_CONTROL as configured, have
+ * its outputs off, carry the mark of a complete bring-up (the balancing period in CB_TIME), show no flag in
+ * ALERT_STATUS, FAULT_STATUS, COV_FAULT, CUV_FAULT and PRESULT_A/B (a CRC flag alone is cleared) and be
+ * ready; and nothing may answer at address 0 or above the top device (PL-SEQ-02-08, -08-02, -13-06, -13-07).
+ * Nothing is read again: a damaged answer counts as a deviation. If all fits, only the self-test of the
+ * chains follows, and if that fails too, nothing was adopted. That is 44 bytes per device instead of the
+ * resets, waits and assignments. Any deviation leads to the bring-up described above, from its beginning;
+ * diagnosis.warm and warm_device tell which. Every later start, SLEEP, a device that was taken in again in
+ * service without having balanced since, a cut-off programming of the EPROM and other settings lead there
+ * too. With warm_start a bring-up of all devices ends with one broadcast more, the mark.
  */
 bq_status bq76pl536_start(bq76pl536 *d);
 

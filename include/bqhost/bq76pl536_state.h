@@ -64,7 +64,8 @@ typedef struct bq76pl536 {
     uint8_t
         height; /* where the stack ends by the last discovery: nothing above is touched until the next one */
     bool crc;   /* present framing */
-    bool sent;  /* this poll started its packet */
+    bool started;       /* bring-up was begun in this life */
+    bool sent;          /* this poll started its packet */
     bool reading;       /* the picture is being renewed */
     bool clear_faults;  /* apply: chip flags are acknowledged */
     bool gpai_pins;     /* GPAI pins instead of the brick voltage */

@@ -42,6 +42,7 @@ static const struct {
     DRIVER("use_conv_pin", use_conv_pin, true),
     DRIVER("variant_a", variant_a, true),
     DRIVER("allow_partial", allow_partial, true),
+    DRIVER("warm_start", warm_start, true),
     AFE_DRIVER(ov_mv, false),
     AFE_DRIVER(uv_mv, false),
     AFE_DRIVER(ov_recover_mv, false),

@@ -28,6 +28,7 @@ static const bq76pl536_config stack_defaults = {
      * quick is seen by other means: a locked converter by DRDY, the cells' limits by the devices' own
      * comparators. */
     .frozen_scans = 250,
+    .warm_start = true, /* a reset of the microcontroller is no reset of the stack */
 };
 
 void board_defaults(board_config *c)

@@ -71,6 +71,7 @@ static void contactor(bool high)
 {
     if (high && !hv.contactor) {
         hv.closed++;
+        hv.closed_ns = hv.now_ns;
         hv.unsafe += hv.forbidden;
     } else if (!high && hv.contactor) {
         hv.opened_ns = hv.now_ns;

@@ -24,6 +24,7 @@ typedef struct hv_world {
     unsigned unsafe;       /* times it did, or precharge did at any time */
     unsigned closed;       /* times it closed */
     uint64_t opened_ns;    /* last time it opened */
+    uint64_t closed_ns;    /* last time it closed */
     emu_can_result result; /* of every frame sent */
     bool dead_wire;        /* CAN held dominant */
     uint32_t frames;       /* sent, whatever became of them */

@@ -67,7 +67,7 @@ static void test_crc_is_that_of_zlib(void)
 
 static void test_the_form_of_a_record(void)
 {
-    const size_t words = 5u + 35u + 2u * 64u + 29u + 62u; /* head, loop and pack, curve, driver, cells */
+    const size_t words = 5u + 35u + 2u * 64u + 30u + 62u; /* head, loop and pack, curve, driver, cells */
     const size_t len = bq_settings_encode(&a.settings, 0x01020304u, record, sizeof record);
 
     TEST_ASSERT_EQUAL((words + 1u) / 2u * 8u, len);
@@ -78,8 +78,11 @@ static void test_the_form_of_a_record(void)
     TEST_ASSERT_EQUAL_HEX32(0x01020304u, word(4));
     TEST_ASSERT_EQUAL(100, word(5));                      /* period_ms */
     TEST_ASSERT_EQUAL_HEX32(0xffffff38u, word(5u + 12u)); /* undertemp_dc = -200 */
-    TEST_ASSERT_EQUAL_HEX32(0xffffffffu, word(len / 4u - 1u));
+    TEST_ASSERT_EQUAL_HEX32(a.cells[BQ76PL536_MAX_DEVICES - 1u], word(words - 1u));
     TEST_ASSERT_EQUAL(0, bq_settings_encode(&a.settings, 1, record, len - 1u));
+    a.parts[3].count--; /* an odd number of words is filled up */
+    TEST_ASSERT_EQUAL(len, bq_settings_encode(&a.settings, 1, record, sizeof record));
+    TEST_ASSERT_EQUAL_HEX32(0xffffffffu, word(words - 1u));
 }
 
 /* The layout does not depend on where a compiler puts a field. */
@@ -134,7 +137,7 @@ static void test_tables_leave_no_field_out(void)
         bq769x0_config afe;
     } u;
     const size_t app = 2u * 4u + 1u + 21u * 2u + 2u * 1u + 3u * 4u + 1u + 2u + 4u * 4u;
-    const size_t stack = 17u * 1u + 9u * 2u + 3u * 4u;
+    const size_t stack = 18u * 1u + 9u * 2u + 3u * 4u;
     const size_t afe = 15u * 1u + 11u * 2u + 4u * 4u;
 
     TEST_ASSERT_EQUAL(app, covered(&bq_app_config_fields, &u, sizeof u.app));
@@ -208,7 +211,7 @@ static void test_a_value_out_of_range_refuses_the_whole_record(void)
         {5u + 12u, 32767, 32768},
         {5u + 29u, 1, 2},                        /* separate_paths */
         {5u + 30u, 64, 65},                      /* points of the curve */
-        {5u + 35u + 128u + 29u + 61u, 255, 256}, /* cells of the last device: the last value of all */
+        {5u + 35u + 128u + 30u + 61u, 255, 256}, /* cells of the last device: the last value of all */
     };
 
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
