@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# bqhost_image(BOARD FAMILY SOURCES...): the firmware image of a board, BOARD.elf, .bin, .hex and .map in the build
+# bqhost_board(BOARD FAMILY SOURCES...): the firmware image of a board with the main program of all boards.
+# bqhost_image(BOARD FAMILY SOURCES...): any image, BOARD.elf, .bin, .hex and .map in the build
 # folder. The board's folder holds link.ld; tools/imagecrc.py writes length and checksum into the image's header.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+function(bqhost_board board family)
+    bqhost_image(${board} ${family} ${PROJECT_SOURCE_DIR}/hal/boards/board_main.c ${ARGN})
+    target_include_directories(${board} PRIVATE ${PROJECT_SOURCE_DIR}/hal/boards)
+endfunction()
 
 function(bqhost_image board family)
     set(common ${PROJECT_SOURCE_DIR}/hal/stm32)

@@ -221,14 +221,14 @@ speed_rows() { # speed_rows SCENARIO
 
 # ---- the firmware images ----
 
-image_build() { # image_build BOARD: the image of the preset, with line numbers, which change no byte of it
-    CFLAGS=-g cmake -S "$root" --preset "$1" -B "$root/build/bench-$1" >/dev/null
+image_build() { # image_build BOARD: the image of the preset
+    cmake -S "$root" --preset "$1" -B "$root/build/bench-$1" >/dev/null
     cmake --build "$root/build/bench-$1" --parallel "$jobs" >/dev/null
 }
 
 image_run() { # image_run BOARD SCENARIO DURATION
     local loop elf=$root/build/bench-$1/$1.elf
-    loop=$(arm-none-eabi-nm "$elf" | awk '$3 == "bq_firmware_step" { print $1 }')
+    loop=$(arm-none-eabi-nm "$elf" | awk '$3 == "board_pass" { print $1 }')
     "$root/build/bench-table16/tools/packsim/packsim" "$2" --duration "$3" --image "$root/build/bench-$1/$1.bin" --quiet \
         --costs "$root/build/bench-$1/costs" ${loop:+--loop "$loop"} >/dev/null
 }

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Flash and RAM of a firmware image, whole and module by module, as tables in Markdown.
 # usage: tools/size_image.sh BOARD.elf [BOARD.map]   the map is that of the GNU linker or of lld; default: beside the .elf
-# The size tool is arm-none-eabi-size, or $SIZE.
+# The size tool is arm-none-eabi-size, or $SIZE. Of an image that was optimised as a whole the map knows no modules: its functions
+# are counted where they were written (inlined ones with their caller), constants and strings as one row.
 set -eu
 elf=${1:?usage: size_image.sh BOARD.elf [BOARD.map]}
 map=${2:-${elf%.elf}.map}
@@ -15,6 +16,27 @@ echo "|---|---|---|---|"
     $1 == ".noinit" { stack = $2 }
     $1 == ".noinit" || $1 == ".data" || $1 == ".bss" { ram += $2 }
     END { printf "| %s | %d | %d | %d |\n", name, flash, ram, stack }'
+
+if grep -q 'ltrans[0-9]*\.ltrans\.o' "$map"; then
+    echo
+    echo "| module | flash |"
+    echo "|---|---|"
+    flash=$("$size" -A "$elf" | awk '$1 == ".vectors" || $1 == ".text" || $1 == ".data" { flash += $2 } END { print flash }')
+    arm-none-eabi-nm -S -l "$elf" | awk -F '\t' -v flash="$flash" '
+        function hex(text,    i, value) {
+            for (i = 1; i <= length(text); i++) value = value * 16 + index("0123456789abcdef", substr(text, i, 1)) - 1
+            return value
+        }
+        split($1, word, " ") != 4 || word[3] !~ /[TtWw]/ || $2 == "" || seen[word[1]]++ { next }
+        { module = $2; sub(/\.[ch]:[0-9]+$/, "", module)
+          if (module ~ /\/hal\/boards\//) module = "board"
+          else if (sub(/.*\/hal\//, "hal/", module)) sub(/\/[^\/]*$/, "", module)
+          else sub(/.*\//, "library: ", module)
+          bytes[module] += hex(word[2]); rest -= hex(word[2]) }
+        END { for (m in bytes) printf "| %s | %d |\n", m, bytes[m]
+              printf "| constants, strings, vectors, compiler | %d |\n", flash + rest }' | sort
+    exit
+fi
 
 echo
 echo "| module | flash | RAM |"

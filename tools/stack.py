@@ -3,8 +3,10 @@
 """Worst-case stack of every entry point of the library, from the call graph that gcc writes (-fcallgraph-info).
 
     tools/stack.py [--cc CC] [--flags=FLAGS] [--targets FILE] [--board FILE] [--top N] [--limit BYTES] [SOURCE...]
+    tools/stack.py --image FOLDER [--targets FILE] [--board FILE] [--top N] [--limit BYTES]
 
-Without sources, all of src/ and drivers/bq*/ is compiled with -Os. Exit status 1, with a line PROBLEM for each, on
+Without sources, all of src/ and drivers/bq*/ is compiled with -Os. With --image nothing is compiled: FOLDER is where an
+image was built with the call graphs of everything in it, and every function that nobody calls is an entry. Exit status 1, with a line PROBLEM for each, on
     recursion (direct, or through a table of functions),
     a frame whose size is not known when compiling (alloca, variable arrays),
     a call through a pointer that the target file does not declare,
@@ -20,6 +22,7 @@ library. What the board's functions need on the stack comes on top, unless they 
 passed over then.
 """
 import argparse
+import functools
 import pathlib
 import re
 import shlex
@@ -52,8 +55,7 @@ class Graph:
         self.frame, self.dynamic, self.edges, self.calls, self.problems = {}, set(), {}, {}, set()
         self.targets, self.board, self.depths = targets, board, {}
 
-    def read(self, ci, source):
-        lines = pathlib.Path(source).read_text().split("\n")
+    def read(self, ci):
         for line in ci.read_text().split("\n"):
             node = re.match(r'node: { title: "([^"]+)" label: ".*?(\d+) bytes \(([a-z,]+)\)', line)
             edge = re.match(r'edge: { sourcename: "([^"]+)" targetname: "([^"]+)"(?: label: "(.*):(\d+):(\d+)")?', line)
@@ -62,12 +64,15 @@ class Graph:
                 if node[3] not in ("static", "dynamic,bounded"):
                     self.dynamic.add(node[1])
             elif edge and edge[2] == INDIRECT:
-                text = lines[int(edge[4]) - 1] if edge[3] == str(source) else \
-                    pathlib.Path(edge[3]).read_text().split("\n")[int(edge[4]) - 1]
+                text = self.lines(edge[3])[int(edge[4]) - 1]
                 member = re.search(r"(\w+)\(", text[int(edge[5]) - 1:])
                 self.calls.setdefault(edge[1], set()).add((readable(edge[3]), member[1] if member else "?", edge[4]))
             elif edge:
                 self.edges.setdefault(edge[1], set()).add(edge[2])
+
+    @functools.lru_cache(maxsize=None)
+    def lines(self, path):
+        return pathlib.Path(path).read_text().split("\n")
 
     def declared(self, caller, path, member, line):
         """Titles that a call through a pointer may reach."""
@@ -106,11 +111,15 @@ class Graph:
         self.depths[title] = self.frame[title] + deepest[0], (short(title),) + deepest[1]
         return self.depths[title]
 
-    def entries(self):
-        """Functions with external linkage that belong to a public header by their name, deepest first."""
+    def entries(self, image):
+        """Functions with external linkage that belong to a public header by their name, deepest first; of an image those
+        that nobody calls."""
         for title in list(self.frame):
             self.depth(title)
         public = [title for title in self.frame if ":" not in title and not title.startswith("pl_")]
+        if image:
+            called = {callee for title in self.frame for callee in self.callees(title)}
+            public = [title for title in self.frame if title not in called]
         return sorted((self.depths[title] for title in public), key=lambda d: (-d[0], d[1]))
 
 
@@ -128,7 +137,7 @@ def compile_graph(options, graph):
                 sys.exit(77)
             if done.returncode != 0:
                 sys.exit(done.stderr)
-            graph.read(target.with_suffix(".ci"), source)
+            graph.read(target.with_suffix(".ci"))
 
 
 def words(file):
@@ -140,6 +149,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cc", default="gcc")
     parser.add_argument("--flags", default="-Os")
+    parser.add_argument("--image", type=pathlib.Path)
     parser.add_argument("--targets", type=pathlib.Path, default=ROOT / "tools/stack.targets")
     parser.add_argument("--board", type=pathlib.Path)
     parser.add_argument("--top", type=int, default=0, help="print the N deepest entries only")
@@ -150,8 +160,12 @@ def main():
     rules = words(options.targets)
     board = {rule[0]: list(rule[1:]) for rule in words(options.board)} if options.board else None
     graph = Graph(rules, board)
-    compile_graph(options, graph)
-    entries = graph.entries()
+    if options.image:
+        for ci in sorted(options.image.rglob("*.ci")):
+            graph.read(ci)
+    else:
+        compile_graph(options, graph)
+    entries = graph.entries(options.image is not None)
     for size, path in entries[:options.top or None]:
         print(f"{size:6} {' > '.join(path)}")
     if options.limit and entries and entries[0][0] > options.limit:

@@ -65,12 +65,13 @@ gate_arrows() {
                 return found
             }
             # The simulator below hal/sim; hal/stm32 below its families, and these below the boards. hal/stm32 itself sees two
-            # headers that each family has.
+            # headers that each family has, hal/boards itself two that each board has.
             function below() {
                 if (file ~ /^hal\/sim\//) return name ~ /^sim_[a-z0-9_]+\.h$/
                 if (file ~ /^hal\/stm32\//) return name ~ /^stm32_(chip|usart)\.h$/
                 if (file ~ /^hal\/stm32f[0-9]\//) return there("hal/stm32")
-                if (file ~ /^hal\/boards\//) return there("hal/stm32") || there("hal/stm32f0") || there("hal/stm32f4")
+                if (file ~ /^hal\/boards\/[a-z_]*\.c$/ && name ~ /^(board|pins)\.h$/) return 1
+                if (file ~ /^hal\/boards\//) return there("hal/boards") || there("hal/stm32") || there("hal/stm32f0") || there("hal/stm32f4")
                 return 0
             }
             BEGIN { dir = file; sub(/\/[^\/]*$/, "", dir)

@@ -27,6 +27,9 @@ fresh() {
     put hal/stm32f0/stm32_chip.h '#include "stm32_time.h"'
     put hal/stm32f4/stm32f4_spi.h ''
     put hal/boards/b/main.c '#include "bqhost/bq76pl536.h"' '#include "stm32_time.h"' '#include "stm32f4_spi.h"'
+    put hal/boards/b/board.h '#include "board_main.h"'
+    put hal/boards/board_main.h ''
+    put hal/boards/board_main.c '#include "bqhost/firmware.h"' '#include "board.h"' '#include "pins.h"'
     put sim/sim_chip.h '#include <math.h>'
     put sim/sim_chip.c '#include "sim_chip.h"'
     put tests/unit/t.c 'TEST_ASSERT_EQUAL(1, 1);' '/* TEST_ASSERT_SAME */'
@@ -89,6 +92,7 @@ put hal/stm32/stm32_time.c '#include "stm32f4_spi.h"';      red arrows hal/stm32
 put hal/stm32f0/stm32_chip.h '#include "stm32f4_spi.h"';    red arrows hal/stm32f0/stm32_chip.h:2 'one family knows the other'
 put hal/stm32f0/stm32_chip.h 'int x = 2 * (float)1;';       red words hal/stm32f0/stm32_chip.h:2 'float in a microcontroller back-end'
 put hal/boards/b/main.c '#include "sim_chip.h"';            red arrows hal/boards/b/main.c:2 'a board knows the simulator'
+put hal/boards/board_main.c '#include "config.h"';          red arrows hal/boards/board_main.c:2 'all boards know one of them'
 echo 'MEMORY {}' >"$tree/hal/boards/b/link.ld";             red spdx hal/boards/b/link.ld:1 'no licence line in a linker script'
 awk 'BEGIN { print "/* SPDX-License-Identifier: Apache-2.0 */"; for (i = 0; i < 500; i++) print "" }' >"$tree/tools/t.c"
 red length tools/t.c:501 'a file of 501 lines'

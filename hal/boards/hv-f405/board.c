@@ -1,57 +1,92 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The board: its pins, its safe state, and the order in which it starts. */
+/* What only hv-f405 has. Contactor and precharge stand first in its table of pins. */
 #include "board.h"
 #include "pins.h"
 #include "stm32_chip.h"
-#include "stm32_clock.h"
-#include "stm32_image.h"
 #include "stm32_nvm.h"
 #include "stm32_supply.h"
-#include "stm32_watchdog.h"
 
-static const stm32_pin pin_table[] = {BOARD_PINS};
-static const stm32_pins pins = {pin_table, sizeof pin_table / sizeof pin_table[0]};
 static const stm32_nvm settings = BOARD_NVM;
+static bq76pl536 monitor;
+static bq76pl536_device devices[BOARD_DEVICES];
 
-/* Contactor and precharge stand first in the table. */
-void board_outputs_safe(void)
+/* ---- interrupts
+ * --------------------------------------------------------------------------------------------- */
+
+void exti1_handler(void)
 {
-    stm32_pins_safe(&pins);
+    board_line_rose(1u << 1); /* DRDY */
 }
 
-void board_start(board_parts *p)
+void exti4_handler(void)
 {
-    stm32_life_begin(&p->boot);
-    p->boot.crystal_failed = !stm32_clock_start(); /* first: the checksum takes ten times longer without */
-    p->boot.image_ok = stm32_image_self_check();
-    p->boot.image_crc = stm32_image_stored_crc();
-    stm32_watchdog_start();
-    stm32_time_init(&p->time);
+    board_line_rose(1u << 4); /* FAULT */
+}
+
+void exti9_5_handler(void)
+{
+    board_line_rose(1u << 5); /* ALERT */
+}
+
+void spi1_handler(void)
+{
+    stm32_spi_irq(&board_hw.spi);
+}
+
+void dma2_stream0_handler(void)
+{
+    stm32_spi_irq(&board_hw.spi);
+}
+
+void dma2_stream3_handler(void)
+{
+    stm32_spi_irq(&board_hw.spi);
+}
+
+void can1_tx_handler(void)
+{
+    stm32_can_irq(&board_hw.can);
+}
+
+void can1_rx0_handler(void)
+{
+    stm32_can_irq(&board_hw.can);
+}
+
+void can1_sce_handler(void)
+{
+    stm32_can_irq(&board_hw.can);
+}
+
+/* ---- for the main program
+ * ----------------------------------------------------------------------------------- */
+
+void board_peripherals(void)
+{
     stm32_supply_init();
-    stm32_pins_init(&pins);
     stm32_irq_enable(STM32_IRQ_EXTI1, 3);
     stm32_irq_enable(STM32_IRQ_EXTI4, 3);
     stm32_irq_enable(STM32_IRQ_EXTI9_5, 3);
-    stm32_uart_init(&p->uart, &p->time, BOARD_BAUD);
-    stm32_spi_init(&p->spi, &p->time, BOARD_SPI_PORT, BOARD_SPI_CS, BOARD_SPI_SCK, BOARD_SPI_MOSI);
-    stm32_adc_init(&p->adc, BOARD_SHUNT_CHANNEL, BOARD_SHUNT_ZERO, BOARD_SHUNT_MA);
-    (void)stm32_can_init(&p->can, &p->time); /* a dead controller is told by its state */
+    stm32_spi_init(&board_hw.spi, &board_hw.time, BOARD_SPI_PORT, BOARD_SPI_CS, BOARD_SPI_SCK,
+                   BOARD_SPI_MOSI);
+    stm32_adc_init(&board_hw.adc, BOARD_SHUNT_CHANNEL, BOARD_SHUNT_ZERO, BOARD_SHUNT_MA);
 }
 
-bq_board board_table(board_parts *p)
+void board_offer(bq_board *b)
 {
-    bq_board b = {.name = BQHOST_BOARD,
-                  .gpio = stm32_gpio(&pins),
-                  .clock = stm32_clock(),
-                  .ammeter = stm32_adc_ammeter(&p->adc),
-                  .can = stm32_can_bus(&p->can),
-                  .console = stm32_uart_stream(&p->uart),
-                  .nvm = stm32_nvm_memory(&settings),
-                  .mcu = stm32_mcu(&p->boot)};
-    return b;
+    b->nvm = stm32_nvm_memory(&settings);
+    b->ammeter = stm32_adc_ammeter(&board_hw.adc);
 }
 
-void board_led(bool on)
+bq_status board_monitor(const bq_board *b, bq_afe *afe)
 {
-    stm32_pin_write(BOARD_LED_PORT, BOARD_LED_PIN, on);
+    bq_spi spi = stm32_spi_bus(&board_hw.spi);
+    *afe = bq76pl536_afe(&monitor);
+    return bq76pl536_init(&monitor, &board_set.stack, &spi, &b->gpio, &b->clock, devices, BOARD_DEVICES);
+}
+
+/* The contactor is the board's own and open. */
+void board_refused(bq_board *b)
+{
+    (void)b;
 }

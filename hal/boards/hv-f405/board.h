@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of this board share. */
+/* What the files of this board share; see board_main.h. */
 #ifndef BOARD_H
 #define BOARD_H
 
@@ -16,6 +16,7 @@
 #define BOARD_DEVICES 32u
 #define BOARD_CELLS (BOARD_DEVICES * BQ76PL536_MAX_CELLS)
 #define BOARD_SENSORS (BOARD_DEVICES * 2u)
+#define BOARD_MODULES BOARD_DEVICES
 #define BOARD_OCV_POINTS 64u
 
 /** The peripherals in use. */
@@ -36,21 +37,6 @@ typedef struct board_config {
     uint8_t cells[BQ76PL536_MAX_DEVICES]; /* of each device */
 } board_config;
 
-/** From reset to running peripherals; interrupts stay masked. Fills parts->boot. */
-void board_start(board_parts *parts);
-
-/** The board for the firmware; `parts` must outlive it. */
-bq_board board_table(board_parts *parts);
-
-/** Sets the LED. */
-void board_led(bool on);
-
-/** Limits of a board that nobody has configured, and the pointers that settings do not hold. */
-void board_defaults(board_config *config);
-
-/** Replaces the defaults by the settings in flash, if there are any, and chooses the clock of the bus where
- * they do not. BQ_OK, also without settings; otherwise a status of bq_settings_load(): they are there and
- * cannot be used. */
-bq_status board_settings(board_config *config, const bq_nvm *nvm);
+#include "board_main.h"
 
 #endif

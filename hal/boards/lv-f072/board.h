@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of this board share. */
+/* What the files of this board share; see board_main.h. */
 #ifndef BOARD_H
 #define BOARD_H
 
@@ -13,6 +13,7 @@
 
 #define BOARD_CELLS 15u
 #define BOARD_SENSORS 3u
+#define BOARD_MODULES 1u
 #define BOARD_OCV_POINTS 64u
 
 /** The peripherals in use. */
@@ -31,20 +32,6 @@ typedef struct board_config {
     bq769x0_config afe;
 } board_config;
 
-/** From reset to running peripherals; interrupts stay masked. Fills parts->boot. */
-void board_start(board_parts *parts);
-
-/** The board for the firmware; `parts` must outlive it. */
-bq_board board_table(board_parts *parts);
-
-/** Sets the LED. */
-void board_led(bool on);
-
-/** Limits of a board that nobody has configured, and the pointers that settings do not hold. */
-void board_defaults(board_config *config);
-
-/** Replaces the defaults by the settings in flash, if there are any. BQ_OK, also without settings; otherwise
- * a status of bq_settings_load(): they are there and cannot be used. */
-bq_status board_settings(board_config *config, const bq_nvm *nvm);
+#include "board_main.h"
 
 #endif

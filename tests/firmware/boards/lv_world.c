@@ -236,7 +236,7 @@ bool lv_mark(const char *map)
     FILE *file = fopen(map, "r");
     bool found = false;
     while (file != NULL && !found && fgets(line, sizeof line, file) != NULL) {
-        found = sscanf(line, " %lx %255s", &address, name) == 2 && strcmp(name, "bq_firmware_step") == 0;
+        found = sscanf(line, " %lx %255s", &address, name) == 2 && strcmp(name, "board_pass") == 0;
     }
     if (file != NULL) {
         (void)fclose(file);

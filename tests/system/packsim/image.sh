@@ -34,8 +34,8 @@ failed_of() { sed -n 's/^\(failed: .*\) (.*/\1/p' "$1"; }
     exit 1
 }
 # The passes are counted at the function that the main loop calls.
-loop=$(arm-none-eabi-nm "${image%.bin}.elf" | awk '$3 == "bq_firmware_step" { print $1 }')
-[ -n "$loop" ] || { echo "no bq_firmware_step in ${image%.bin}.elf"; exit 1; }
+loop=$(arm-none-eabi-nm "${image%.bin}.elf" | awk '$3 == "board_pass" { print $1 }')
+[ -n "$loop" ] || { echo "no board_pass in ${image%.bin}.elf"; exit 1; }
 case $image in *lv-f072.bin) pass_cycles=9600 ;; *) pass_cycles=33600 ;; esac
 status=0
 "$packsim" "$@" --image "$image" --costs "$scratch/$name.costs" --loop "$loop" --decisions "$scratch/$name.image" >"$scratch/$name.out" 2>&1 || status=$?

@@ -4,8 +4,8 @@ function(broken name)
     cmake_parse_arguments(B "" "" "WRAP" ${ARGN})
     set(folder ${PROJECT_SOURCE_DIR}/hal/boards/${board})
     set(CMAKE_CURRENT_SOURCE_DIR ${folder}) # where bqhost_image() looks for the linker script and the headers
-    bqhost_image(${name} ${family} ${folder}/board.c ${folder}/config.c ${folder}/main.c
-        ${PROJECT_SOURCE_DIR}/tests/firmware/images/broken/${name}.c)
+    file(GLOB sources ${folder}/*.c)
+    bqhost_board(${name} ${family} ${sources} ${PROJECT_SOURCE_DIR}/tests/firmware/images/broken/${name}.c)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/firmware/images/broken)
     foreach(symbol ${B_WRAP})
         target_link_options(${name} PRIVATE -Wl,--wrap=${symbol})

@@ -13,7 +13,7 @@ uint32_t __wrap_bq_firmware_step(bq_firmware *fw);
 static __attribute__((noinline)) uint32_t deeper(uint32_t depth)
 {
     volatile uint32_t here[2] = {depth, depth};
-    if ((uintptr_t)here > (uintptr_t)stm32_guard_end) {
+    if ((uintptr_t)here >= (uintptr_t)stm32_guard_end) {
         here[1] = deeper(depth + 1u);
     }
     return here[0] + here[1];
