@@ -215,9 +215,9 @@ typedef struct bq_pack_summary {
 /** One pack controller, about 1.6 KB. Caller-owned; read any field, write none. */
 typedef struct bq_pack {
     bq_pack_state_id state;
-    bool stepped, have_sequence, started, resting, balancing, outputs_on, drive_charge,
-        drive_discharge; /* private */
-    uint16_t duty;       /* private */
+    bool stepped, have_sequence, started, resting, balancing; /* private */
+    uint8_t drives;                                           /* private: the directions that are on */
+    uint16_t duty;                                            /* private */
     /* what is used most lies near the beginning: only that is one instruction away on a Cortex-M0 */
     bq_pack_config config;
     uint32_t state_ms;    /**< `now_ms` at which the state was entered */

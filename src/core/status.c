@@ -3,5 +3,7 @@
 
 const char *bq_status_name(bq_status status)
 {
-    return status_word(STATUS_WORDS("BQ_", "BQ_E_"), status);
+    const char *name = status_word(STATUS_WORDS("BQ_", "BQ_E_"), status);
+
+    return *name != '?' ? name : "BQ_E_?";
 }

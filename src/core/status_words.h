@@ -19,16 +19,15 @@
          "\0\0\0" /* to -29 */                                                                               \
         bad "VERIFY\0" bad "NOT_FOUND\0" bad "EXTRA_DEVICE\0" bad "LOCKED_UP\0" bad "DEFECTIVE\0" bad        \
          "LINE_STUCK\0" bad "CHAIN_BROKEN\0" bad "PERSISTS\0" bad "NOT_BLANK\0" bad "VOLTAGE\0" bad          \
-         "STALE\0" bad "CRC_OFF\0" bad "?"
+         "STALE\0" bad "CRC_OFF\0?"
 
 /* The word of a status in such a list. */
 static inline const char *status_word(const char *words, bq_status status)
 {
-    const unsigned last = (unsigned)BQ_PENDING + 1u - (unsigned)BQ_E_CRC_OFF; /* the "?" */
-    const unsigned n = (unsigned)BQ_PENDING - (unsigned)status; /* large for what is above BQ_PENDING */
-    const char *word = bq_word(words, n < last ? n : last);
+    const char *word =
+        bq_word(words, (unsigned)BQ_PENDING - (unsigned)status); /* large for what is above it */
 
-    return *word != '\0' ? word : bq_word(words, last);
+    return *word != '\0' ? word : bq_word(word, UINT32_MAX);
 }
 
 #endif

@@ -3,7 +3,7 @@
 
 const char *bq_word(const char *words, uint32_t n)
 {
-    for (; n > 0u; n--) {
+    for (; n > 0u && *words != '?'; n--) {
         while (*words++ != '\0') {
         }
     }

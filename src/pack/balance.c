@@ -14,7 +14,7 @@ static bool resting(const bq_pack *p, const bq_picture *v)
         return v->s->current_ma <= p->config.balance_rest_ma &&
                v->s->current_ma >= -p->config.balance_rest_ma;
     }
-    return v->s != NULL && !v->s->current_valid && !p->outputs_on && v->in->contactor_mismatch_ms == 0u;
+    return v->s != NULL && !v->s->current_valid && p->drives == 0u && v->in->contactor_mismatch_ms == 0u;
 }
 
 /* Everything but the spread: PL-SEQ-10-01 asks for fresh valid voltages, no fault, no lockout, no sleep. */
@@ -71,7 +71,7 @@ static void choose(bq_pack *p, const bq_sample *s, bq_action *a)
             first = i;
         }
         if (s->cells[i].mv >= least && (limit == 0u || before(s, first, i) < limit)) {
-            bq_mask_set(a->balance, (uint16_t)(i + 1u));
+            a->balance[i / 32u] |= (uint32_t)1u << (i % 32u);
             p->summary.balancing++;
         }
     }

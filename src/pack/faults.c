@@ -34,7 +34,7 @@ static const uint8_t order[BQ_FAULT_COUNT] = {
 
 const char *bq_pack_fault_name(bq_pack_fault fault)
 {
-    return bq_word(names, (unsigned)fault < BQ_FAULT_COUNT ? (unsigned)fault : BQ_FAULT_COUNT);
+    return bq_word(names, (uint32_t)fault);
 }
 
 bool bq_pack_fault_stops_charge(bq_pack_fault fault)
@@ -47,11 +47,12 @@ bool bq_pack_fault_stops_discharge(bq_pack_fault fault)
     return (unsigned)fault < BQ_FAULT_COUNT && (BIT(fault) & SPARES_DISCHARGE) == 0u;
 }
 
-bool bq_pack_stops(const bq_pack *p, bool charge)
+uint8_t bq_pack_stopped(const bq_pack *p)
 {
-    const uint32_t spares = charge ? SPARES_CHARGE : SPARES_DISCHARGE;
+    const uint32_t spares = p->config.separate_paths ? UINT32_MAX : 0u;
 
-    return (p->faults & ~(p->config.separate_paths ? spares : 0u)) != 0u;
+    return (uint8_t)(((p->faults & ~(spares & SPARES_CHARGE)) != 0u ? BQ_DRIVES_CHARGE : 0u) |
+                     ((p->faults & ~(spares & SPARES_DISCHARGE)) != 0u ? BQ_DRIVES_DISCHARGE : 0u));
 }
 
 bq_pack_fault bq_pack_cause(const bq_pack *p)

@@ -6,18 +6,12 @@
 
 const char *bq_pack_state_name(bq_pack_state_id state)
 {
-    const unsigned last = BQ_PACK_SLEEP;
-
-    return bq_word("init\0self-test\0standby\0on\0fault\0sleep\0?",
-                   (unsigned)state <= last ? (unsigned)state : last + 1u);
+    return bq_word("init\0self-test\0standby\0on\0fault\0sleep\0?", (uint32_t)state);
 }
 
 const char *bq_pack_hold_name(bq_pack_hold hold)
 {
-    const unsigned last = BQ_HOLD_TIME;
-
-    return bq_word("none\0condition\0hysteresis\0unknown\0request\0time\0?",
-                   (unsigned)hold <= last ? (unsigned)hold : last + 1u);
+    return bq_word("none\0condition\0hysteresis\0unknown\0request\0time\0?", (uint32_t)hold);
 }
 
 void bq_pack_log(bq_pack *p, bq_pack_event_kind kind, unsigned code, unsigned where)
@@ -40,8 +34,7 @@ bq_status bq_pack_init(bq_pack *p, const bq_pack_config *config)
     memset(p, 0, sizeof *p);
     p->config = *config;
     p->state = BQ_PACK_INIT;
-    p->summary.soc_permille = -1;
-    bq_soc_init(&p->soc);
+    p->summary.soc_permille = -1; /* and all zero is what bq_soc_init() makes */
     return BQ_OK;
 }
 
@@ -75,38 +68,38 @@ static void wake(bq_pack *p)
 /* The transition table of pack.h, line by line. */
 static bq_pack_state_id next_state(const bq_pack *p, const bq_pack_input *in)
 {
-    const bool up = in->monitor == BQ_MONITOR_UP;
     const bool passed = in->self_test == BQ_TEST_PASSED;
     const bool agrees = in->contactor_mismatch_ms == 0u;
 
     if (p->state == BQ_PACK_SLEEP) {
         return in->request == BQ_REQUEST_SLEEP ? BQ_PACK_SLEEP : BQ_PACK_INIT;
     }
-    if (in->request == BQ_REQUEST_SLEEP && !p->outputs_on && agrees) {
+    if (in->request == BQ_REQUEST_SLEEP && p->drives == 0u && agrees) {
         return BQ_PACK_SLEEP;
     }
     if (p->faults != 0u) {
         return BQ_PACK_FAULT;
     }
+    if (p->state == BQ_PACK_ON) {
+        return in->request == BQ_REQUEST_ON ? BQ_PACK_ON : BQ_PACK_STANDBY;
+    }
+    if (in->monitor != BQ_MONITOR_UP) {
+        return BQ_PACK_INIT;
+    }
     switch (p->state) {
     case BQ_PACK_FAULT:
-        return up && passed ? BQ_PACK_STANDBY : BQ_PACK_INIT;
+        return passed ? BQ_PACK_STANDBY : BQ_PACK_INIT;
     case BQ_PACK_INIT:
-        return up && p->started ? BQ_PACK_SELF_TEST : BQ_PACK_INIT;
+        return p->started ? BQ_PACK_SELF_TEST : BQ_PACK_INIT;
     case BQ_PACK_SELF_TEST:
-        if (!up) {
-            return BQ_PACK_INIT;
-        }
         return passed && p->summary.complete ? BQ_PACK_STANDBY : BQ_PACK_SELF_TEST;
-    case BQ_PACK_STANDBY:
-        if (!up || !passed) {
+    default: /* standby */
+        if (!passed) {
             return BQ_PACK_INIT;
         }
         return in->request == BQ_REQUEST_ON && p->summary.complete && p->pending == 0u && agrees
                    ? BQ_PACK_ON
                    : BQ_PACK_STANDBY;
-    default:
-        return in->request == BQ_REQUEST_ON ? BQ_PACK_ON : BQ_PACK_STANDBY;
     }
 }
 
@@ -127,14 +120,15 @@ static void change_state(bq_pack *p, const bq_pack_input *in)
 /* In the state "on" both directions conduct. In "fault" one may stay on if it was, never come back. */
 static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
 {
-    const bool on = p->state == BQ_PACK_ON;
-    const bool may_stay = p->state == BQ_PACK_FAULT && in->request == BQ_REQUEST_ON;
-
-    p->drive_charge = on || (may_stay && p->drive_charge && !bq_pack_stops(p, true));
-    p->drive_discharge = on || (may_stay && p->drive_discharge && !bq_pack_stops(p, false));
-    p->outputs_on = p->drive_charge || p->drive_discharge;
-    a->charge_on = p->drive_charge;
-    a->discharge_on = p->drive_discharge;
+    if (p->state == BQ_PACK_ON) {
+        p->drives = BQ_DRIVES_CHARGE | BQ_DRIVES_DISCHARGE;
+    } else if (p->state == BQ_PACK_FAULT && in->request == BQ_REQUEST_ON) {
+        p->drives &= (uint8_t)~bq_pack_stopped(p);
+    } else {
+        p->drives = 0;
+    }
+    a->charge_on = (p->drives & BQ_DRIVES_CHARGE) != 0u;
+    a->discharge_on = (p->drives & BQ_DRIVES_DISCHARGE) != 0u;
     a->sleep = p->state == BQ_PACK_SLEEP;
 }
 

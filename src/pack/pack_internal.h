@@ -60,7 +60,9 @@ static inline bool bq_pack_limits_current(const bq_pack_config *k)
     return (k->charge_max_ma | k->discharge_max_ma) != 0;
 }
 
-bool bq_pack_stops(const bq_pack *p, bool charge); /* an active fault forbids this direction */
+#define BQ_DRIVES_CHARGE 1u
+#define BQ_DRIVES_DISCHARGE 2u
+uint8_t bq_pack_stopped(const bq_pack *p); /* the directions that active faults forbid */
 
 /* balance.c: fills a->balance. */
 void bq_pack_balance(bq_pack *p, const bq_picture *v, bq_action *a);

@@ -5,7 +5,9 @@
 
 uint32_t bq_pack_add_ms(uint32_t a, uint32_t b)
 {
-    return b > UINT32_MAX - a ? UINT32_MAX : a + b;
+    const uint32_t sum = a + b;
+
+    return sum | (0u - (uint32_t)(sum < a));
 }
 
 /* Nothing is outside the modules, and cells are in their order. */
@@ -61,16 +63,15 @@ static void mark(bq_picture *v, unsigned m, unsigned what)
 static void look_at_modules(const bq_pack *p, bq_picture *v)
 {
     for (uint16_t m = 0; m < v->s->module_count; m++) {
-        const uint16_t flags = v->s->modules[m].faults;
-        if (module_age(p, v->s, m) > p->config.comm_timeout_ms) {
-            mark(v, m, BQ_MODULE_OLD);
-        }
+        const uint32_t flags = v->s->modules[m].faults;
+        unsigned what = module_age(p, v->s, m) > p->config.comm_timeout_ms ? BQ_MODULE_OLD : 0u;
         if ((flags & BQ_F_COMM) != 0u) {
-            mark(v, m, BQ_MODULE_SILENT);
+            what |= BQ_MODULE_SILENT;
         }
         if ((flags & BQ_F_SUPPLY) != 0u) {
-            mark(v, m, BQ_MODULE_DISCARDED | BQ_MODULE_NO_CELL);
+            what |= BQ_MODULE_DISCARDED | BQ_MODULE_NO_CELL;
         }
+        mark(v, m, what);
     }
 }
 
@@ -165,7 +166,9 @@ static void update_blindness(bq_pack *p, const bq_picture *v)
 
     y->complete = v->s != NULL && (v->any & (uint8_t)~BQ_MODULE_DISCARDED) == 0u &&
                   (v->current_known || !bq_pack_limits_current(&p->config));
-    p->started = p->started || (y->complete && v->in->monitor == BQ_MONITOR_UP);
+    if (y->complete && v->in->monitor == BQ_MONITOR_UP) {
+        p->started = true;
+    }
     for (uint16_t m = 0; m < p->config.modules; m++) {
         uint32_t blind = p->blind_ms[m];
         if (v->s != NULL && v->live &&
