@@ -255,9 +255,8 @@ typedef enum bq_reset_cause {
 /** What a fault handler leaves behind in memory that survives a reset. */
 typedef struct bq_crash {
     uint32_t kind; /**< number of the exception (3 = HardFault ...), 0x100 = stack guard, 0x101 = assertion */
-    uint32_t pc, lr, psr, sp;
-    uint32_t cfsr, hfsr, address; /**< fault status registers where the core has them, else 0 */
-    uint32_t uptime_ms;
+    uint32_t pc, lr, sp, uptime_ms;
+    uint32_t psr, cfsr, hfsr, address; /**< the last three: fault status where the core has it, else 0 */
 } bq_crash;
 
 /** What the start-up code found out; constant afterwards. */

@@ -120,19 +120,17 @@ static void identity(bq_console *c, const bq_console_target *t)
     console_text(c, t->name != NULL ? t->name : "");
 }
 
-static void crash(bq_console *c, const bq_crash *k)
+/* The words of a crash, as they stand in their structure: five in the first row, four in the second. */
+static void crash(bq_console *c, const bq_crash *k, bool second)
 {
-    const int32_t v[] = {(int32_t)k->kind, (int32_t)k->pc, (int32_t)k->lr, (int32_t)k->sp,
-                         (int32_t)k->uptime_ms};
+    int32_t v[sizeof *k / sizeof(int32_t)];
 
-    console_say(c, "crash     kind %0 pc %X lr %X sp %X after %t s", v);
-}
-
-static void registers(bq_console *c, const bq_crash *k)
-{
-    const int32_t v[] = {(int32_t)k->psr, (int32_t)k->cfsr, (int32_t)k->hfsr, (int32_t)k->address};
-
-    console_say(c, "          psr %X cfsr %X hfsr %X address %X", v);
+    memcpy(v, k, sizeof v);
+    if (second) {
+        console_say(c, "          psr %X cfsr %X hfsr %X address %X", &v[5]);
+    } else {
+        console_say(c, "crash     kind %0 pc %X lr %X sp %X after %t s", v);
+    }
 }
 
 static void start(bq_console *c, const bq_mcu *m)
@@ -162,11 +160,8 @@ console_row console_version(bq_console *c, const bq_console_target *t)
     case 1:
         start(c, t->mcu);
         break;
-    case 2:
-        crash(c, &b->crash);
-        break;
     default:
-        registers(c, &b->crash);
+        crash(c, &b->crash, row == 3u);
         break;
     }
     return CONSOLE_ROW;

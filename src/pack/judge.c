@@ -13,27 +13,23 @@ enum { CELL_OV, CELL_UV, OVERTEMP, OPEN_WIRE, LISTS };
 
 #define NOT_VALID (-1)
 
-static void set_place(bq_condition *c, bool sensor, unsigned n)
-{
-    if (sensor) {
-        c->sensor = (uint8_t)n;
-    } else {
-        c->cell = (uint16_t)n;
-    }
-}
-
 /* In the module of the condition: its k-th (k from 0) cell or sensor, or the first one without a valid
  * reading. False if the module has none. */
 static bool find(const bq_sample *s, bq_condition *c, bool sensor, int k)
 {
-    const unsigned count = sensor ? s->temp_count : s->cell_count;
+    const unsigned count = sensor ? s->temp_count : s->cell_count, module = c->device - 1u;
+    const bq_cell_reading *r = bq_reading(s, sensor, 0);
 
-    for (unsigned i = 0; i < count; i++) {
-        const bq_cell_reading *r = bq_reading(s, sensor, i);
-        if (r->module + 1u == c->device && (k == NOT_VALID ? (r->quality & BQ_Q_VALID) == 0u : k-- == 0)) {
-            set_place(c, sensor, i + 1u);
-            return true;
+    for (unsigned n = 1; n <= count; n++, r++) {
+        if (r->module != module || (k == NOT_VALID ? (r->quality & BQ_Q_VALID) != 0u : k-- != 0)) {
+            continue;
         }
+        if (sensor) {
+            c->sensor = (uint8_t)n;
+        } else {
+            c->cell = (uint16_t)n;
+        }
+        return true;
     }
     return false;
 }
@@ -53,28 +49,40 @@ static int32_t as_value(uint32_t ms)
     return ms > INT32_MAX ? INT32_MAX : (int32_t)ms;
 }
 
-/* Takes what shows the cause first, or what shows it at once after what has to last. False if it is not
- * taken. */
-static bool found(bq_condition *c, uint8_t device, int32_t value, uint16_t debounce_ms)
+/* Takes what shows the cause first, in place of what is only suspected. False if another one did before. */
+static bool found(bq_condition *c, uint8_t device, int32_t value)
 {
-    if (c->broken && (debounce_ms != 0u || c->debounce_ms == 0u)) {
+    if (c->broken && c->debounce_ms == 0u) {
         return false;
     }
     c->broken = true;
-    c->debounce_ms = debounce_ms;
+    c->debounce_ms = 0;
     c->device = device;
     c->value = value;
     return true;
 }
 
-/* A limit that must not be exceeded, or, where it lies below its release, not be undercut. */
+/* What has to last for comm_timeout_ms. */
+static void suspected(const bq_pack *p, bq_condition *c, uint8_t device, int32_t value)
+{
+    if (!c->broken) {
+        (void)found(c, device, value);
+        c->debounce_ms = p->config.comm_timeout_ms;
+    }
+}
+
+/* A limit that must not be exceeded, or, where it lies below its release, not be undercut (~ turns the
+ * order). */
 static void limit(bq_condition *c, int32_t value, int32_t trip, int32_t clear)
 {
-    const bool high = trip > clear;
-
     c->value = value;
-    c->broken = high ? value > trip : value < trip;
-    c->clear = high ? value < clear : value > clear;
+    if (trip < clear) {
+        value = ~value;
+        trip = ~trip;
+        clear = ~clear;
+    }
+    c->broken = value > trip;
+    c->clear = value < clear;
 }
 
 static void judge_cells(const bq_pack *p, bq_condition *c)
@@ -116,7 +124,7 @@ static void judge_current(const bq_pack *p, const bq_picture *v, bq_condition *c
 
     if (!v->current_known) {
         if (p->started && bq_pack_limits_current(k)) {
-            (void)found(&c[BQ_FAULT_SENSOR], 0, as_value(v->s->current_age_ms), 0);
+            (void)found(&c[BQ_FAULT_SENSOR], 0, as_value(v->s->current_age_ms));
         }
         return;
     }
@@ -149,8 +157,7 @@ static void judge_lists(const bq_sample *s, const bq_module_reading *r, uint8_t 
 
     c += BQ_FAULT_CHIP_CELL_OV;
     for (unsigned i = 0; i < LISTS; i++, c++) {
-        if ((bits[i] != 0u || (r->faults & flag[i]) != 0u) && found(c, device, r->faults, 0) &&
-            bits[i] != 0u) {
+        if ((bits[i] != 0u || (r->faults & flag[i]) != 0u) && found(c, device, r->faults) && bits[i] != 0u) {
             find_listed(s, c, i, bits[i]);
         }
     }
@@ -162,15 +169,15 @@ static void judge_module(const bq_pack *p, const bq_sample *s, const bq_module_r
     const uint16_t flags = r->faults;
 
     if ((flags & CHIP_HARD) != 0u) {
-        (void)found(&c[BQ_FAULT_CHIP], device, flags, 0);
+        (void)found(&c[BQ_FAULT_CHIP], device, flags);
     } else if ((flags & CHIP_SOFT) != 0u) {
-        (void)found(&c[BQ_FAULT_CHIP], device, flags, p->config.comm_timeout_ms);
+        suspected(p, &c[BQ_FAULT_CHIP], device, flags);
     }
     if ((flags & BQ_F_SUPPLY) != 0u) {
         return;
     }
     if ((flags & (BQ_F_OVERCURRENT | BQ_F_SHORT)) != 0u) {
-        (void)found(&c[BQ_FAULT_OVERCURRENT], device, flags, 0);
+        (void)found(&c[BQ_FAULT_OVERCURRENT], device, flags);
     }
     judge_lists(s, r, device, c);
 }
@@ -180,7 +187,7 @@ static void judge_modules(const bq_pack *p, const bq_picture *v, bq_condition *c
     for (uint16_t m = 0; m < v->s->module_count; m++) {
         judge_module(p, v->s, &v->s->modules[m], (uint8_t)(m + 1u), c);
     }
-    if (v->open_cell != 0u && found(&c[BQ_FAULT_OPEN_WIRE], 0, 0, 0)) {
+    if (v->open_cell != 0u && found(&c[BQ_FAULT_OPEN_WIRE], 0, 0)) {
         c[BQ_FAULT_OPEN_WIRE].cell = v->open_cell;
     }
 }
@@ -193,14 +200,14 @@ static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_co
     const int32_t blind = as_value(p->blind_ms[m]);
 
     if (v->s == NULL || (wrong & (BQ_MODULE_OLD | BQ_MODULE_SILENT)) != 0u) {
-        (void)found(&c[BQ_FAULT_COMM_LOSS], device, blind, 0);
+        (void)found(&c[BQ_FAULT_COMM_LOSS], device, blind);
         return;
     }
     if ((wrong & BQ_MODULE_NO_CELL) != 0u && (p->faults & explained) == 0u &&
-        found(&c[BQ_FAULT_NO_READING], device, blind, 0)) {
+        found(&c[BQ_FAULT_NO_READING], device, blind)) {
         (void)find(v->s, &c[BQ_FAULT_NO_READING], false, NOT_VALID);
     }
-    if ((wrong & BQ_MODULE_NO_TEMP) != 0u && found(&c[BQ_FAULT_SENSOR], device, blind, 0)) {
+    if ((wrong & BQ_MODULE_NO_TEMP) != 0u && found(&c[BQ_FAULT_SENSOR], device, blind)) {
         (void)find(v->s, &c[BQ_FAULT_SENSOR], true, NOT_VALID);
     }
 }
@@ -208,16 +215,16 @@ static void judge_blind(const bq_pack *p, const bq_picture *v, uint16_t m, bq_co
 static void judge_input(const bq_pack *p, const bq_pack_input *in, bq_condition *c)
 {
     if (in->self_test == BQ_TEST_FAILED) {
-        (void)found(&c[BQ_FAULT_SELF_TEST], 0, (int32_t)in->self_test_status, 0);
+        (void)found(&c[BQ_FAULT_SELF_TEST], 0, (int32_t)in->self_test_status);
     }
     if (in->monitor == BQ_MONITOR_FAILED) {
-        (void)found(&c[BQ_FAULT_CONFIG], 0, (int32_t)in->monitor_status, 0);
+        (void)found(&c[BQ_FAULT_CONFIG], 0, (int32_t)in->monitor_status);
     }
     if (in->contactor_mismatch_ms >= BQ_PACK_MISMATCH_MS) {
-        (void)found(&c[BQ_FAULT_CONTACTOR], 0, as_value(in->contactor_mismatch_ms), 0);
+        (void)found(&c[BQ_FAULT_CONTACTOR], 0, as_value(in->contactor_mismatch_ms));
     }
     if (in->apply_status < 0 && in->apply_status != BQ_E_STATE) {
-        (void)found(&c[BQ_FAULT_CHIP], 0, (int32_t)in->apply_status, p->config.comm_timeout_ms);
+        suspected(p, &c[BQ_FAULT_CHIP], 0, (int32_t)in->apply_status);
     }
 }
 

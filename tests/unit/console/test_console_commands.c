@@ -210,7 +210,7 @@ static void test_version_tells_the_last_reset_and_the_crash(void)
     t.boot.image_ok = false;
     t.boot.crashed = true;
     t.boot.crash =
-        (bq_crash){3, 0x08001234, 0x08005679, 0x01000003, 0x20001ff0, 0x8200, 0x40000000, 0xe000, 1234};
+        (bq_crash){3, 0x08001234, 0x08005679, 0x20001ff0, 1234, 0x01000003, 0x8200, 0x40000000, 0xe000};
     answers("version", "crash, crystal failed, image 12ab34cd damaged");
     TEST_ASSERT_NOT_NULL(
         strstr(t.text, "crash     kind 3 pc 08001234 lr 08005679 sp 20001ff0 after 1.2 s\r\n"));
