@@ -8,13 +8,12 @@
 
 #define MOST_VALUES 5u
 
-/* A member of bq_app: offset in 12 bits, size in 3, sign in one. */
-#define U(member) (uint16_t)(offsetof(bq_app, member) | sizeof(((bq_app *)0)->member) << 12)
-#define S(member) (uint16_t)(U(member) | 0x8000u)
+#define U(member) BQ_FIELD(bq_app, member, BQ_FIELD_UNSIGNED)
+#define S(member) BQ_FIELD(bq_app, member, BQ_FIELD_SIGNED)
 
 /* What the rows show, one row after the other. The last ones are there to be read beyond the last row. */
 /* clang-format off */
-static const uint16_t fields[] = {
+static const bq_field fields[] = {
     /*  0 state     */ U(pack.state), U(pack.state_ms),
     /*  2 outputs   */ U(action.charge_on), U(action.discharge_on), U(line_on),
     /*  5 request   */ U(input.request),
@@ -60,10 +59,7 @@ static const char *look(const bq_app *app, unsigned row, int32_t *v)
     const bq_pack *p = bq_app_pack(app);
 
     for (unsigned i = 0; i < MOST_VALUES; i++) {
-        const unsigned code = fields[first[row] + i];
-        const bq_field f = {code & 0xfffu, code >> 12 & 7u,
-                            (uint8_t)((code & 0x8000u) != 0u ? BQ_FIELD_SIGNED : BQ_FIELD_UNSIGNED)};
-        v[i] = (int32_t)bq_field_load(&f, app);
+        v[i] = (int32_t)bq_field_load(fields[first[row] + i], app);
     }
     if (row == ROW_CAUSE) {
         const bq_pack_fault f = bq_pack_cause(p);

@@ -32,7 +32,8 @@ uint32_t bq_settings_layout(const bq_settings *s)
                            (uint8_t)p->count,        (uint8_t)(p->count >> 8)};
         crc = bq_crc32(crc, head, sizeof head);
         for (uint16_t f = 0; f < p->table->count; f++) {
-            const uint8_t shape[2] = {p->table->fields[f].size, p->table->fields[f].kind};
+            const bq_field field = p->table->fields[f];
+            const uint8_t shape[2] = {(uint8_t)bq_field_size(field), (uint8_t)bq_field_kind_of(field)};
             crc = bq_crc32(crc, shape, sizeof shape);
         }
     }
@@ -166,8 +167,8 @@ static bq_status read_values(const bq_settings *s, const bq_nvm *nvm, uint8_t se
         }
         offset += 4u;
         if (store) {
-            bq_field_store(f, object, settings_get32(word));
-        } else if (!settings_field_fits(f, settings_get32(word))) {
+            bq_field_store(*f, object, settings_get32(word));
+        } else if (!settings_field_fits(*f, settings_get32(word))) {
             return BQ_E_RANGE;
         }
     }

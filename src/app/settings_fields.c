@@ -49,7 +49,7 @@ static const bq_field point_fields[] = {
     BQ_FIELD(bq_ocv_point, mv, BQ_FIELD_UNSIGNED),
 };
 
-static const bq_field byte_fields[] = {{0, 1, BQ_FIELD_UNSIGNED}};
+static const bq_field byte_fields[] = {BQ_FIELD_AT(0, 1, BQ_FIELD_UNSIGNED)};
 
 #define COUNT(array) ((uint16_t)(sizeof(array) / sizeof((array)[0])))
 

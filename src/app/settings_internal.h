@@ -28,7 +28,7 @@ void settings_put32(uint8_t *at, uint32_t value);
 settings_walk settings_begin(const bq_settings *s);
 /* The next field and the object that has it; NULL past the end. */
 const bq_field *settings_next(settings_walk *w, void **object);
-bool settings_field_fits(const bq_field *f, uint32_t value);
+bool settings_field_fits(bq_field f, uint32_t value);
 
 /* Words of the whole record, even; above BQ_SETTINGS_MAX_WORDS: too many. */
 uint32_t settings_words(const bq_settings *s);

@@ -22,7 +22,7 @@ static uint32_t next_value(maker *m)
     void *object = NULL;
     const bq_field *f = settings_next(&m->walk, &object);
 
-    return f != NULL ? bq_field_load(f, object) : UINT32_MAX;
+    return f != NULL ? bq_field_load(*f, object) : UINT32_MAX;
 }
 
 static uint32_t next_word(maker *m)

@@ -39,8 +39,8 @@ const bq_field *settings_next(settings_walk *w, void **object)
     return NULL;
 }
 
-bool settings_field_fits(const bq_field *f, uint32_t value)
+bool settings_field_fits(bq_field f, uint32_t value)
 {
     return bq_field_fit(f, value) == value &&
-           (f->kind != (uint8_t)BQ_FIELD_POINTS || value <= BQ_FIELD_MAX_POINTS);
+           (bq_field_kind_of(f) != BQ_FIELD_POINTS || value <= BQ_FIELD_MAX_POINTS);
 }

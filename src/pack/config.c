@@ -63,12 +63,12 @@ static const struct order {
 
 static int32_t load(const bq_pack_config *c, unsigned n)
 {
-    return (int32_t)bq_field_load(&fields[n].f, c);
+    return (int32_t)bq_field_load(fields[n].f, c);
 }
 
 static bool in_range(unsigned n, int32_t value)
 {
-    const int32_t unit = fields[n].f.size == 4u ? 1000 : 1;
+    const int32_t unit = bq_field_size(fields[n].f) == 4u ? 1000 : 1;
 
     return value >= fields[n].min * unit && value <= fields[n].max * unit;
 }
@@ -98,7 +98,7 @@ bq_status bq_pack_config_set(bq_pack_config *config, const char *name, int32_t v
     if (!in_range(n, value)) {
         return BQ_E_RANGE;
     }
-    bq_field_store(&fields[n].f, config, (uint32_t)value);
+    bq_field_store(fields[n].f, config, (uint32_t)value);
     return BQ_OK;
 }
 

@@ -38,45 +38,45 @@ void tearDown(void)
 static void test_a_field_is_read_as_its_type(void)
 {
     o = (object){1, 200, 2, true, 60000, -2, 4000000000u, -3, -128};
-    TEST_ASSERT_EQUAL_UINT32(200, bq_field_load(&u8, &o));
-    TEST_ASSERT_EQUAL_UINT32(1, bq_field_load(&flag, &o));
-    TEST_ASSERT_EQUAL_UINT32(60000, bq_field_load(&u16, &o));
-    TEST_ASSERT_EQUAL_INT32(-2, (int32_t)bq_field_load(&i16, &o));
-    TEST_ASSERT_EQUAL_UINT32(4000000000u, bq_field_load(&u32, &o));
-    TEST_ASSERT_EQUAL_INT32(-3, (int32_t)bq_field_load(&i32, &o));
-    TEST_ASSERT_EQUAL_INT32(-128, (int32_t)bq_field_load(&i8, &o));
+    TEST_ASSERT_EQUAL_UINT32(200, bq_field_load(u8, &o));
+    TEST_ASSERT_EQUAL_UINT32(1, bq_field_load(flag, &o));
+    TEST_ASSERT_EQUAL_UINT32(60000, bq_field_load(u16, &o));
+    TEST_ASSERT_EQUAL_INT32(-2, (int32_t)bq_field_load(i16, &o));
+    TEST_ASSERT_EQUAL_UINT32(4000000000u, bq_field_load(u32, &o));
+    TEST_ASSERT_EQUAL_INT32(-3, (int32_t)bq_field_load(i32, &o));
+    TEST_ASSERT_EQUAL_INT32(-128, (int32_t)bq_field_load(i8, &o));
 }
 
 static void test_a_field_is_written_alone(void)
 {
     o.before = 1;
     o.after = 2;
-    bq_field_store(&u8, &o, 0x1ffu);
+    bq_field_store(u8, &o, 0x1ffu);
     TEST_ASSERT_EQUAL(0xff, o.u8);
     TEST_ASSERT_EQUAL(1, o.before);
     TEST_ASSERT_EQUAL(2, o.after);
-    bq_field_store(&i16, &o, (uint32_t)-5);
+    bq_field_store(i16, &o, (uint32_t)-5);
     TEST_ASSERT_EQUAL(-5, o.i16);
     TEST_ASSERT_EQUAL(0, o.u16);
     TEST_ASSERT_EQUAL(0, o.u32);
-    bq_field_store(&i32, &o, (uint32_t)-7);
+    bq_field_store(i32, &o, (uint32_t)-7);
     TEST_ASSERT_EQUAL(-7, o.i32);
     TEST_ASSERT_EQUAL(0, o.i8);
-    bq_field_store(&flag, &o, 2);
+    bq_field_store(flag, &o, 2);
     TEST_ASSERT_TRUE(o.flag);
 }
 
 static void test_what_a_field_can_hold_fits(void)
 {
-    TEST_ASSERT_EQUAL_UINT32(255, bq_field_fit(&u8, 255));
-    TEST_ASSERT_EQUAL_UINT32(0, bq_field_fit(&u8, 256));
-    TEST_ASSERT_EQUAL_UINT32((uint32_t)-128, bq_field_fit(&i8, (uint32_t)-128));
-    TEST_ASSERT_EQUAL_UINT32((uint32_t)-128, bq_field_fit(&i8, 128));
-    TEST_ASSERT_EQUAL_UINT32(65535, bq_field_fit(&u16, 65535));
-    TEST_ASSERT_EQUAL_UINT32(32767, bq_field_fit(&i16, 32767));
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, bq_field_fit(&u32, UINT32_MAX));
-    TEST_ASSERT_EQUAL_UINT32(0x80000000u, bq_field_fit(&i32, 0x80000000u));
-    TEST_ASSERT_EQUAL_UINT32(1, bq_field_fit(&flag, 2));
+    TEST_ASSERT_EQUAL_UINT32(255, bq_field_fit(u8, 255));
+    TEST_ASSERT_EQUAL_UINT32(0, bq_field_fit(u8, 256));
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)-128, bq_field_fit(i8, (uint32_t)-128));
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)-128, bq_field_fit(i8, 128));
+    TEST_ASSERT_EQUAL_UINT32(65535, bq_field_fit(u16, 65535));
+    TEST_ASSERT_EQUAL_UINT32(32767, bq_field_fit(i16, 32767));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, bq_field_fit(u32, UINT32_MAX));
+    TEST_ASSERT_EQUAL_UINT32(0x80000000u, bq_field_fit(i32, 0x80000000u));
+    TEST_ASSERT_EQUAL_UINT32(1, bq_field_fit(flag, 2));
 }
 
 static void test_words_are_counted_from_the_beginning(void)

@@ -88,10 +88,11 @@ static void test_the_form_of_a_record(void)
 /* The layout does not depend on where a compiler puts a field. */
 static void test_layout_follows_shape_and_meaning_not_offsets(void)
 {
-    static const bq_field one[] = {{0, 2, BQ_FIELD_UNSIGNED}, {4, 1, BQ_FIELD_BOOL}};
-    static const bq_field moved[] = {{8, 2, BQ_FIELD_UNSIGNED}, {3, 1, BQ_FIELD_BOOL}};
-    static const bq_field wider[] = {{0, 4, BQ_FIELD_UNSIGNED}, {4, 1, BQ_FIELD_BOOL}};
-    static const bq_field other_kind[] = {{0, 2, BQ_FIELD_SIGNED}, {4, 1, BQ_FIELD_BOOL}};
+    static const bq_field one[] = {BQ_FIELD_AT(0, 2, BQ_FIELD_UNSIGNED), BQ_FIELD_AT(4, 1, BQ_FIELD_BOOL)};
+    static const bq_field moved[] = {BQ_FIELD_AT(8, 2, BQ_FIELD_UNSIGNED), BQ_FIELD_AT(3, 1, BQ_FIELD_BOOL)};
+    static const bq_field wider[] = {BQ_FIELD_AT(0, 4, BQ_FIELD_UNSIGNED), BQ_FIELD_AT(4, 1, BQ_FIELD_BOOL)};
+    static const bq_field other_kind[] = {BQ_FIELD_AT(0, 2, BQ_FIELD_SIGNED),
+                                          BQ_FIELD_AT(4, 1, BQ_FIELD_BOOL)};
     const bq_field_table tables[] = {{one, 2, 1, 8},        {moved, 2, 1, 16}, {wider, 2, 1, 8},
                                      {other_kind, 2, 1, 8}, {one, 1, 1, 8},    {one, 2, 2, 8}};
     uint32_t layout[6];
