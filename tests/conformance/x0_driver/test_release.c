@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The edges of the release of a fault (X0-SEQ-29..36): a threshold that is just met, how long a cleared bit
+ * is watched, when waits that grew are short again. */
+#include "bench.h"
+
+#define PERIOD 100 /* ms between two scans: finer than the part's own times */
+
+void setUp(void)
+{
+}
+void tearDown(void)
+{
+}
+
+static void on_duty(const char *name, uint16_t ocd_delay_ms)
+{
+    bench_part(name, NULL);
+    b.cfg.ocd_delay_ms = ocd_delay_ms;
+    TEST_ASSERT_EQUAL(BQ_OK, bench_init());
+    TEST_ASSERT_EQUAL(BQ_OK, bench_start());
+    bench_serve(2750, 250);
+    TEST_ASSERT_TRUE(sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip));
+}
+
+static uint32_t until_on(uint32_t limit)
+{
+    uint64_t from = b.chip.now;
+    while (b.chip.now < from + limit * MS) {
+        bench_serve(PERIOD, PERIOD);
+        if (sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip))
+            break;
+    }
+    return (uint32_t)((b.chip.now - from) / MS);
+}
+
+static void strike(double volts, double ms)
+{
+    (void)sim_x0_set_sense(&b.chip, volts);
+    bench_wait(ms);
+    (void)sim_x0_set_sense(&b.chip, 0);
+    bench_serve(2 * PERIOD, PERIOD);
+    TEST_ASSERT_FALSE(sim_x0_chg(&b.chip) || sim_x0_dsg(&b.chip));
+}
+
+/* Below, or above, the recovery threshold; not at it. */
+/* proves: X0-SEQ-30, X0-SEQ-31 */
+static void test_a_cell_at_its_recovery_threshold_releases_nothing(void)
+{
+    static const struct {
+        double bad, edge;
+        int edge_mv;
+        uint8_t bit;
+    } side[2] = {{4.3, 4.1, 4100, 0x04}, {2.7, 3.0, 3000, 0x08}};
+    for (int i = 0; i < 2; i++) {
+        on_duty("bq7692003", 320);
+        (void)sim_x0_set_cell(&b.chip, 4, side[i].bad);
+        bench_serve(3000, PERIOD);
+        TEST_ASSERT_TRUE(b.chip.reg[0] & side[i].bit);
+        (void)sim_x0_set_cell(&b.chip, 4, side[i].edge);
+        TEST_ASSERT_EQUAL(20000, until_on(20000));
+        TEST_ASSERT_EQUAL(side[i].edge_mv, b.cells[3].mv);
+        TEST_ASSERT_TRUE(b.chip.reg[0] & side[i].bit);
+        (void)sim_x0_set_cell(&b.chip, 4, side[i].edge + (i == 0 ? -0.001 : 0.001));
+        TEST_ASSERT_TRUE(until_on(20000) < 5000);
+        NO_MISUSE();
+    }
+}
+
+/* Any cell may be the one, also the lowest and the highest. */
+/* proves: X0-SEQ-30, X0-SEQ-31 */
+static void test_every_cell_counts(void)
+{
+    for (int under = 0; under < 2; under++)
+        for (int cell = 1; cell <= 10; cell++) {
+            on_duty("bq7693003", 320);
+            (void)sim_x0_set_cell(&b.chip, cell, under ? 2.7 : 4.3);
+            bench_serve(3000, PERIOD);
+            (void)sim_x0_set_cell(&b.chip, cell, under ? 2.95 : 4.15);
+            TEST_ASSERT_EQUAL(6000, until_on(6000));
+            (void)sim_x0_set_cell(&b.chip, cell, 3.6);
+            TEST_ASSERT_TRUE(until_on(20000) < 5000);
+            NO_MISUSE();
+        }
+}
+
+/* A release looks at what is held and at nothing else: a cell between the recovery threshold and the limit of
+ * the other side, or of a fault that is not held, keeps nobody waiting. */
+/* proves: X0-SEQ-30, X0-SEQ-31, X0-SEQ-32 */
+static void test_what_is_not_held_holds_nothing(void)
+{
+    for (int kind = 0; kind < 3; kind++) {
+        on_duty("bq7692003", 320);
+        if (kind == 0) {
+            (void)sim_x0_set_cell(&b.chip, 1, 4.3);
+            (void)sim_x0_set_cell(&b.chip, 2, 2.9);
+            bench_serve(3000, PERIOD);
+        } else if (kind == 1) {
+            (void)sim_x0_set_cell(&b.chip, 1, 2.7);
+            (void)sim_x0_set_cell(&b.chip, 2, 4.15);
+            bench_serve(3000, PERIOD);
+        } else {
+            (void)sim_x0_set_cell(&b.chip, 1, 4.15);
+            (void)sim_x0_set_cell(&b.chip, 2, 2.9);
+            bench_serve(3000, PERIOD);
+            strike(-0.150, 0.2);
+        }
+        TEST_ASSERT_EQUAL_HEX8(kind == 0 ? 0x04 : kind == 1 ? 0x08 : 0x02, b.chip.reg[0] & 0x3f);
+        if (kind < 2)
+            (void)sim_x0_set_cell(&b.chip, 1, 3.6);
+        TEST_ASSERT_TRUE(until_on(20000) < 5000);
+        NO_MISUSE();
+    }
+}
+
+/* When `reg` is next written with one of `bits`, in ns; 0 = not. */
+static uint64_t written(uint64_t *n, uint8_t reg, uint8_t bits)
+{
+    for (; *n < b.count; (*n)++) {
+        const bench_entry *e = bench_log(*n);
+        if (reg >= e->reg && reg < e->reg + e->wrote && (e->data[reg - e->reg] & bits) != 0)
+            return e->t_ns;
+    }
+    return 0;
+}
+
+/* The delay that could bring the bit back, and 500 ms. */
+/* proves: X0-SEQ-29, X0-SEQ-32 */
+static void test_a_cleared_overcurrent_is_watched_for_its_own_delay(void)
+{
+    static const uint16_t delay[3] = {8, 320, 1280};
+    for (int i = 0; i < 3; i++) {
+        uint64_t n, cleared, on;
+        on_duty("bq7693003", delay[i]);
+        strike(-0.045, delay[i] + 20.0);
+        n = b.count;
+        TEST_ASSERT_TRUE(until_on(20000) < 20000);
+        cleared = written(&n, 0, 0x01);
+        on = written(&n, 5, 0x02);
+        TEST_ASSERT_TRUE(cleared != 0 && on >= cleared + (delay[i] + 500u) * MS);
+        TEST_ASSERT_TRUE(on <= cleared + (delay[i] + 500u + 3u * PERIOD) * MS);
+        NO_MISUSE();
+    }
+}
+
+/* Cleared after 3 s, looked at again after 1 s, whatever the delay of the overcurrent is; then the whole
+ * configuration. */
+/* proves: X0-SEQ-35 */
+static void test_a_cleared_internal_fault_is_watched_for_a_second(void)
+{
+    static const uint16_t delay[2] = {8, 1280};
+    for (int i = 0; i < 2; i++) {
+        uint64_t n, struck, cleared, configured;
+        on_duty("bq7693003", delay[i]);
+        n = b.count;
+        struck = b.chip.now;
+        (void)sim_x0_strike_xready(&b.chip);
+        TEST_ASSERT_TRUE(until_on(20000) < 20000);
+        cleared = written(&n, 0, 0x20);
+        configured = written(&n, 6, 0xff);
+        TEST_ASSERT_TRUE(cleared >= struck + 3000 * MS && cleared <= struck + (3000 + 4 * PERIOD) * MS);
+        TEST_ASSERT_TRUE(configured >= cleared + 1000 * MS);
+        TEST_ASSERT_TRUE(configured <= cleared + (1000 + 3 * PERIOD) * MS);
+        NO_MISUSE();
+    }
+}
+
+/* proves: X0-SEQ-32 */
+static void test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again(void)
+{
+    uint32_t first, third = 0;
+    on_duty("bq7692003", 320);
+    strike(-0.150, 0.2);
+    first = until_on(20000);
+    for (int n = 0; n < 3; n++) {
+        strike(-0.150, 0.2);
+        third = until_on(20000);
+    }
+    TEST_ASSERT_TRUE(third > first + 750);
+    bench_serve(10500, 250);
+    strike(-0.150, 0.2);
+    TEST_ASSERT_INT_WITHIN(2 * PERIOD, (int)first, (int)until_on(20000));
+    NO_MISUSE();
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_cell_at_its_recovery_threshold_releases_nothing);
+    RUN_TEST(test_every_cell_counts);
+    RUN_TEST(test_what_is_not_held_holds_nothing);
+    RUN_TEST(test_a_cleared_overcurrent_is_watched_for_its_own_delay);
+    RUN_TEST(test_a_cleared_internal_fault_is_watched_for_a_second);
+    RUN_TEST(test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again);
+    return UNITY_END();
+}
