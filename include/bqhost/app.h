@@ -87,7 +87,7 @@ typedef struct bq_app {
     bool asleep;
     bool line_on, line_failed, mismatch, mismatch_told, current_seen;
     bq_app_job job;
-    uint32_t last_us, rest_us, now_ms;  /* software-extended time */
+    uint32_t last_us, ms_us, now_ms;    /* software-extended time; the clock when now_ms began */
     uint32_t period_us, tick_us;        /* when the present period began */
     uint32_t step_us, step_ms;          /* last pack step */
     uint32_t wait_us;                   /* hint of the running job */

@@ -63,7 +63,7 @@ typedef struct bq_firmware {
     /* private; small members first, as in bq_app */
     bq_pack_request request; /* of bq_firmware_request() */
     bool high, resetting, busy, safe_running, safe_done;
-    uint32_t last_us, rest_us, now_ms; /* the clock, extended */
+    uint32_t ms_us, now_ms; /* the clock, extended; what it read when now_ms began */
     uint32_t step_ms, fed_ms, high_ms, reset_ms, safe_ms;
     bq_telemetry_source source;
     bq_console_target target;

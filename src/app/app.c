@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The super-loop: time, period, pack step, outputs. */
 #include "app_internal.h"
+#include "bqhost/text.h"
 #include <string.h>
 
 #define DEFAULT_RETRY_MS 1000u
@@ -15,43 +16,36 @@ void bq_app_count(uint32_t *counter)
 
 /* ---- set-up ---------------------------------------------------------------------------------- */
 
-static bq_status own_fields(const bq_app_config *c, const char **field)
-{
-    /* 0.9 x timer > 1.25 x period (PL-CB-14), in ms and multiplied by 100 */
-    const uint32_t timer = (uint32_t)c->balance_timer_s * 90000u;
+/* Number of the first field of the loop's own that cannot be, below; FIELDS: none. */
+enum { PERIOD, RETRY, TIMEOUT, TIMER, FIELDS };
 
+static unsigned wrong_field(const bq_app_config *c)
+{
     if (c->period_ms < 10u || c->period_ms > 10000u) {
-        *field = "period_ms";
-        return BQ_E_RANGE;
+        return PERIOD;
     }
     if (c->retry_ms != 0u && (c->retry_ms < 100u || c->retry_ms > 60000u)) {
-        *field = "retry_ms";
-        return BQ_E_RANGE;
+        return RETRY;
     }
     if (c->pack.comm_timeout_ms < 2u * c->period_ms) {
-        *field = "comm_timeout_ms";
-        return BQ_E_CONFIG;
+        return TIMEOUT;
     }
-    if (c->balance_timer_s != 0u && timer <= 125u * c->period_ms) {
-        *field = "balance_timer_s";
-        return BQ_E_CONFIG;
-    }
-    *field = NULL;
-    return BQ_OK;
+    /* 0.9 x timer > 1.25 x period (PL-CB-14), in ms and multiplied by 100 */
+    return c->balance_timer_s != 0u && c->balance_timer_s * 90000u <= 125u * c->period_ms ? TIMER : FIELDS;
 }
 
 bq_status bq_app_config_validate(const bq_app_config *config, const char **field)
 {
-    const char *unused;
-    const char **name = field != NULL ? field : &unused;
-    bq_status status;
+    bq_status status = bq_pack_config_validate(config != NULL ? &config->pack : NULL, field);
+    const unsigned wrong = status == BQ_OK ? wrong_field(config) : FIELDS;
 
-    *name = NULL;
-    if (config == NULL) {
-        return BQ_E_ARG;
+    if (wrong != FIELDS) {
+        status = wrong < TIMEOUT ? BQ_E_RANGE : BQ_E_CONFIG;
+        if (field != NULL) {
+            *field = bq_word("period_ms\0retry_ms\0comm_timeout_ms\0balance_timer_s", wrong);
+        }
     }
-    status = bq_pack_config_validate(&config->pack, name);
-    return status != BQ_OK ? status : own_fields(config, name);
+    return status;
 }
 
 static bool complete(const bq_afe *afe)
@@ -81,6 +75,7 @@ static void start_time(bq_app *app)
 {
     app->last_us = app->clock.now_us(app->clock.ctx);
     app->tick_us = app->last_us;
+    app->ms_us = app->last_us;
     app->step_now = true;
 }
 
@@ -132,16 +127,11 @@ bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *af
 
 static void advance_time(bq_app *app)
 {
-    const uint32_t now_us = app->clock.now_us(app->clock.ctx);
-    const uint32_t passed_us = now_us - app->last_us;
-    uint32_t passed_ms = passed_us / 1000u;
+    uint32_t passed_ms;
 
-    app->last_us = now_us;
-    app->rest_us += passed_us - passed_ms * 1000u;
-    if (app->rest_us >= 1000u) {
-        app->rest_us -= 1000u;
-        passed_ms++;
-    }
+    app->last_us = app->clock.now_us(app->clock.ctx);
+    passed_ms = (app->last_us - app->ms_us) / 1000u;
+    app->ms_us += passed_ms * 1000u;
     app->now_ms += passed_ms;
 }
 

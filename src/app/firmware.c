@@ -15,7 +15,7 @@ static void set_up(bq_firmware *fw, const bq_board *board)
     memset(fw, 0, sizeof *fw);
     fw->board = *board;
     fw->request = BQ_REQUEST_OFF;
-    fw->last_us = board->clock.now_us(board->clock.ctx);
+    fw->ms_us = board->clock.now_us(board->clock.ctx);
     fw->fed_ms = UINT32_MAX;
     fw->target.name = board->name;
     fw->target.mcu = &fw->board.mcu;
@@ -92,13 +92,9 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 
 static void advance_time(bq_firmware *fw)
 {
-    const uint32_t now_us = fw->board.clock.now_us(fw->board.clock.ctx);
-    uint32_t passed_ms;
+    const uint32_t passed_ms = (fw->board.clock.now_us(fw->board.clock.ctx) - fw->ms_us) / 1000u;
 
-    fw->rest_us += now_us - fw->last_us;
-    fw->last_us = now_us;
-    passed_ms = fw->rest_us / 1000u;
-    fw->rest_us -= passed_ms * 1000u;
+    fw->ms_us += passed_ms * 1000u;
     fw->now_ms += passed_ms;
     fw->target.now_ms = fw->now_ms;
     fw->source.now_ms = fw->now_ms;

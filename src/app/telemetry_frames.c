@@ -11,14 +11,6 @@ typedef struct halves {
     uint32_t low, high;
 } halves;
 
-static void put32(uint8_t *at, uint32_t value)
-{
-    for (unsigned i = 0; i < 4u; i++) {
-        at[i] = (uint8_t)value;
-        value >>= 8;
-    }
-}
-
 /* Two numbers of 16 bits. */
 static uint32_t pair(uint32_t first, uint32_t second)
 {
@@ -207,7 +199,10 @@ bool bq_telemetry_frame(const bq_telemetry_source *source, bq_telemetry_id id, u
     frame->id = BQ_TELEMETRY_ID + (uint32_t)id;
     frame->extended = false;
     frame->len = 8;
-    put32(frame->data, h.low);
-    put32(frame->data + 4, h.high);
+    for (unsigned i = 0; i < 8u; i++) {
+        frame->data[i] = (uint8_t)h.low;
+        h.low = h.low >> 8 | h.high << 24;
+        h.high >>= 8;
+    }
     return known;
 }
