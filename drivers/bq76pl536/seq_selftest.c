@@ -33,8 +33,8 @@ static void report_stuck(bq76pl536 *d, unsigned reg)
 
 /*
  * The chain of status register `reg`: FORCE in the top device must reach the host, and only from there. If it
- * does not, lower devices are forced until one is heard: the break is above it. f->n = device forced, f->x =
- * lowest that was not heard.
+ * does not, the lowest device that is not heard is sought by halving: the break is below it. f->n = device
+ * forced, f->val = highest that was heard, f->x = lowest that was not.
  */
 bq_status pl_job_chain(bq76pl536 *d, bq76pl536_frame *f)
 {
@@ -46,7 +46,8 @@ bq_status pl_job_chain(bq76pl536 *d, bq76pl536_frame *f)
         d->diagnosis.chain_skipped = true;
         return BQ_OK;
     }
-    for (f->n = d->found; f->n >= 1u; f->n--) {
+    for (f->x = (uint8_t)(d->found + 1u); f->val + 1u < f->x;) {
+        f->n = f->x > d->found ? d->found : (uint8_t)((f->val + f->x) / 2u);
         SEQ_TRY(d, f, PL_JOB_WRITE, f->n, f->reg, FORCE);
         f->i = pl_line(d, line_of(f->reg), &high) && high ? 1u : 0u;
         if (f->n == d->found && f->i != 0u) {
@@ -60,9 +61,13 @@ bq_status pl_job_chain(bq76pl536 *d, bq76pl536_frame *f)
         }
         SEQ_TRY(d, f, PL_JOB_WRITE, f->n, f->reg, 0);
         if (f->i != 0u) {
-            break;
+            f->val = f->n;
+        } else {
+            f->x = f->n;
         }
-        f->x = f->n;
+    }
+    if (f->x > d->found) {
+        f->x = 0;
     }
     report_break(d, f->reg, f->x);
     if (pl_line(d, line_of(f->reg), &high) && high) { /* 09-04 */

@@ -204,7 +204,10 @@ bq_status bq76pl536_apply(bq76pl536 *d, const bq_action *action);
 /**
  * Proves the FAULT and ALERT chains by forcing the top device (PL-SEQ-09). A chain whose line the board does
  * not have, or that is high for a reason, is left out (diagnosis.chain_skipped). Ends with BQ_OK,
- * BQ_E_CHAIN_BROKEN (diagnosis names the lowest device that is not heard), BQ_E_LINE_STUCK.
+ * BQ_E_CHAIN_BROKEN (diagnosis names the lowest device that is not heard), BQ_E_LINE_STUCK. It takes about 21
+ * bytes per device, and no more where a chain is broken: the place is found by halving. The readings age
+ * meanwhile: the time a pack allows for that has to exceed a scan and a self-test together (360 ms with 62
+ * devices at 62.5 kHz).
  */
 bq_status bq76pl536_self_test(bq76pl536 *d);
 

@@ -9,7 +9,8 @@ static driver_rig r;
 static bq76pl536_config c;
 static int fault_break, alert_break; /* devices above this one are not heard; 99 = whole */
 static bool stuck_after;
-static int forced[8];
+static int forced[64];
+static uint32_t bytes;
 
 static bool below(int reg, int limit)
 {
@@ -51,8 +52,9 @@ static bool watch(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n)
 {
     (void)ctx;
     (void)rx;
+    bytes += n;
     if (n == 4 && (tx[1] == 0x20 || tx[1] == 0x21) && tx[2] == 0x10) {
-        forced[(tx[0] >> 1) & 7]++;
+        forced[tx[0] >> 1]++;
     }
     return false;
 }
@@ -72,6 +74,7 @@ static void open_board(void)
 static bq_status self_test(void)
 {
     memset(forced, 0, sizeof forced);
+    bytes = 0;
     TEST_ASSERT_EQUAL_INT(BQ_OK, bq76pl536_self_test(&r.d));
     return rig_run(&r, 5);
 }
@@ -131,6 +134,34 @@ static void a_broken_chain_is_located(void)
     TEST_ASSERT_EQUAL_HEX16(0, r.modules[0].faults | r.modules[3].faults);
 }
 
+/* 62 devices: whatever place the break has, finding it takes no longer than proving the whole chain, so that
+ * the readings do not grow older than in a healthy stack.
+ * proves: PL-SEQ-09-02 */
+static void a_break_is_found_in_few_steps(void)
+{
+    c = rig_config(62);
+    open_board();
+    const uint64_t from = sim_pl_now(&r.pl);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, rig_scan(&r));
+    TEST_ASSERT_EQUAL_INT(BQ_OK, self_test());
+    TEST_ASSERT_LESS_THAN(360, (uint32_t)((sim_pl_now(&r.pl) - from) / SIM_PL_MS));
+    const uint32_t whole = bytes;
+    TEST_ASSERT_UINT_WITHIN(62, 21 * 62 + 26, whole); /* some reads take a byte more: PL-CRC-12 */
+    for (fault_break = 0; fault_break < 62; fault_break++) {
+        int most = 0, sum = 0;
+        TEST_ASSERT_EQUAL_INT(BQ_E_CHAIN_BROKEN, self_test());
+        TEST_ASSERT_EQUAL_UINT(fault_break + 1, bq76pl536_diagnose(&r.d)->fault_chain_break);
+        for (int n = 1; n <= 62; n++) {
+            most = forced[n] > most ? forced[n] : most;
+            sum += forced[n];
+        }
+        TEST_ASSERT_EQUAL_INT(2, most);        /* the top device, for each chain */
+        TEST_ASSERT_LESS_OR_EQUAL(1 + 7, sum); /* 2 to the 6th exceeds 61 */
+        TEST_ASSERT_LESS_THAN(whole, bytes);
+    }
+    TEST_ASSERT_EQUAL_UINT(0, rig_misuse(&r));
+}
+
 /* proves: PL-SEQ-09-04 */
 static void a_line_that_does_not_fall_again_is_stuck(void)
 {
@@ -169,6 +200,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(forces_the_top_device_and_releases_it);
     RUN_TEST(a_broken_chain_is_located);
+    RUN_TEST(a_break_is_found_in_few_steps);
     RUN_TEST(a_line_that_does_not_fall_again_is_stuck);
     RUN_TEST(a_chain_that_is_already_high_is_left_out);
     RUN_TEST(a_board_without_lines_tests_nothing);
