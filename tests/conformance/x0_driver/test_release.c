@@ -123,18 +123,30 @@ static uint64_t written(uint64_t *n, uint8_t reg, uint8_t bits)
     return 0;
 }
 
-/* The delay that could bring the bit back, and 500 ms. */
+/* Looks for a load between the log's entries `from` and `to`. */
+static unsigned looks(uint64_t from, uint64_t to)
+{
+    unsigned seen = 0;
+    for (; from < to; from++)
+        seen += bench_log(from)->read == 1 && bench_log(from)->reg == 4;
+    return seen;
+}
+
+/* Four times no load, also where there never was one. Then the delay that could bring the bit back, and 500
+ * ms.
+ */
 /* proves: X0-SEQ-29, X0-SEQ-32 */
 static void test_a_cleared_overcurrent_is_watched_for_its_own_delay(void)
 {
     static const uint16_t delay[3] = {8, 320, 1280};
     for (int i = 0; i < 3; i++) {
-        uint64_t n, cleared, on;
+        uint64_t n, struck, cleared, on;
         on_duty("bq7693003", delay[i]);
+        struck = n = b.count;
         strike(-0.045, delay[i] + 20.0);
-        n = b.count;
         TEST_ASSERT_TRUE(until_on(20000) < 20000);
         cleared = written(&n, 0, 0x01);
+        TEST_ASSERT_EQUAL(4, looks(struck, n));
         on = written(&n, 5, 0x02);
         TEST_ASSERT_TRUE(cleared != 0 && on >= cleared + (delay[i] + 500u) * MS);
         TEST_ASSERT_TRUE(on <= cleared + (delay[i] + 500u + 3u * PERIOD) * MS);
@@ -143,13 +155,13 @@ static void test_a_cleared_overcurrent_is_watched_for_its_own_delay(void)
 }
 
 /* Cleared after 3 s, looked at again after 1 s, whatever the delay of the overcurrent is; then the whole
- * configuration. */
+ * configuration, and a scan and 2 s more before a FET comes on. */
 /* proves: X0-SEQ-35 */
 static void test_a_cleared_internal_fault_is_watched_for_a_second(void)
 {
     static const uint16_t delay[2] = {8, 1280};
     for (int i = 0; i < 2; i++) {
-        uint64_t n, struck, cleared, configured;
+        uint64_t n, struck, cleared, configured, on;
         on_duty("bq7693003", delay[i]);
         n = b.count;
         struck = b.chip.now;
@@ -160,8 +172,62 @@ static void test_a_cleared_internal_fault_is_watched_for_a_second(void)
         TEST_ASSERT_TRUE(cleared >= struck + 3000 * MS && cleared <= struck + (3000 + 4 * PERIOD) * MS);
         TEST_ASSERT_TRUE(configured >= cleared + 1000 * MS);
         TEST_ASSERT_TRUE(configured <= cleared + (1000 + 3 * PERIOD) * MS);
+        on = written(&n, 5, 0x03);
+        TEST_ASSERT_TRUE(on >= configured + (2000 + 250) * MS);
         NO_MISUSE();
     }
+}
+
+/* CHG needs 100 ms to fall before the first look, unless the board says otherwise. */
+/* proves: X0-LOAD-05 */
+static void test_the_first_look_waits_for_the_pin(void)
+{
+    static const uint16_t settle[3] = {0, 60, 400};
+    for (int i = 0; i < 3; i++) {
+        uint64_t n, struck, wait = settle[i] != 0 ? settle[i] : 100;
+        bench_part("bq7692003", NULL);
+        b.cfg.load_settle_ms = settle[i];
+        TEST_ASSERT_EQUAL(BQ_OK, bench_init());
+        TEST_ASSERT_EQUAL(BQ_OK, bench_start());
+        bench_serve(2750, 250);
+        (void)sim_x0_set_sense(&b.chip, -0.150);
+        bench_wait(0.2);
+        (void)sim_x0_set_sense(&b.chip, 0);
+        n = b.count;
+        struck = b.chip.now;
+        bench_serve(800, 10);
+        while (n < b.count && looks(n, n + 1) == 0)
+            n++;
+        TEST_ASSERT_TRUE(n < b.count);
+        TEST_ASSERT_TRUE(bench_log(n)->t_ns >= struck + wait * MS);
+        TEST_ASSERT_TRUE(bench_log(n)->t_ns <= struck + (wait + 50) * MS);
+        NO_MISUSE();
+    }
+}
+
+/* proves: X0-SEQ-32 */
+static void test_a_short_circuit_within_ten_seconds_waits_longer(void)
+{
+    uint32_t first;
+    on_duty("bq7692003", 320);
+    strike(-0.150, 0.2);
+    first = until_on(20000);
+    bench_serve(8500, 250);
+    strike(-0.150, 0.2);
+    TEST_ASSERT_TRUE(until_on(20000) >= first + 200);
+    NO_MISUSE();
+}
+
+/* Only short circuits lock. */
+/* proves: X0-SEQ-32 */
+static void test_overcurrents_never_lock(void)
+{
+    on_duty("bq7692003", 320);
+    for (int n = 0; n < 9; n++) {
+        strike(-0.045, 400);
+        TEST_ASSERT_TRUE(until_on(20000) < 20000);
+    }
+    NO_MISUSE();
 }
 
 /* proves: X0-SEQ-32 */
@@ -190,6 +256,9 @@ int main(void)
     RUN_TEST(test_what_is_not_held_holds_nothing);
     RUN_TEST(test_a_cleared_overcurrent_is_watched_for_its_own_delay);
     RUN_TEST(test_a_cleared_internal_fault_is_watched_for_a_second);
+    RUN_TEST(test_the_first_look_waits_for_the_pin);
+    RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
+    RUN_TEST(test_overcurrents_never_lock);
     RUN_TEST(test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again);
     return UNITY_END();
 }
