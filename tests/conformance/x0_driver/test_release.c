@@ -205,6 +205,56 @@ static void test_the_first_look_waits_for_the_pin(void)
     }
 }
 
+/* Every 250 ms for a host that scans so often, and only while an overcurrent is held. */
+/* proves: X0-SEQ-32, X0-LOAD-05 */
+static void test_looks_come_with_every_scan(void)
+{
+    uint64_t n, last = 0;
+    on_duty("bq7692003", 320);
+    (void)sim_x0_set_chgpin(&b.chip, 3.0);
+    strike(-0.150, 0.2);
+    n = b.count;
+    bench_serve(5000, 250);
+    TEST_ASSERT_INT_WITHIN(1, 20, (int)looks(n, b.count));
+    for (; n < b.count; n++)
+        if (looks(n, n + 1) != 0) {
+            TEST_ASSERT_TRUE(last == 0 || bench_log(n)->t_ns - last <= 300 * MS);
+            last = bench_log(n)->t_ns;
+        }
+    on_duty("bq7692003", 320);
+    (void)sim_x0_set_cell(&b.chip, 1, 4.3);
+    bench_serve(2500, 250);
+    n = b.count;
+    bench_serve(5000, 250);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, b.module.faults);
+    TEST_ASSERT_EQUAL(0, looks(n, b.count));
+    NO_MISUSE();
+}
+
+/* What is on probation is held still: another fault adds to it, and both are released together. */
+/* proves: X0-SEQ-36, X0-SEQ-29 */
+static void test_a_fault_during_a_probation_adds_to_it(void)
+{
+    uint64_t n;
+    bench_part("bq7692003", NULL);
+    b.cfg.ov_delay_s = 8;
+    TEST_ASSERT_EQUAL(BQ_OK, bench_init());
+    TEST_ASSERT_EQUAL(BQ_OK, bench_start());
+    bench_serve(2750, 250);
+    (void)sim_x0_set_cell(&b.chip, 1, 4.3);
+    bench_serve(9500, PERIOD);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, b.module.faults);
+    (void)sim_x0_set_cell(&b.chip, 1, 3.6);
+    n = b.count;
+    bench_serve(4000, PERIOD);
+    TEST_ASSERT_TRUE(written(&n, 0, 0x04) != 0); /* cleared, for 8.5 s on probation */
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, b.module.faults);
+    strike(-0.150, 0.2);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV | BQ_F_SHORT, b.module.faults);
+    TEST_ASSERT_TRUE(until_on(20000) >= 2000 + 8500);
+    NO_MISUSE();
+}
+
 /* proves: X0-SEQ-32 */
 static void test_a_short_circuit_within_ten_seconds_waits_longer(void)
 {
@@ -257,6 +307,8 @@ int main(void)
     RUN_TEST(test_a_cleared_overcurrent_is_watched_for_its_own_delay);
     RUN_TEST(test_a_cleared_internal_fault_is_watched_for_a_second);
     RUN_TEST(test_the_first_look_waits_for_the_pin);
+    RUN_TEST(test_looks_come_with_every_scan);
+    RUN_TEST(test_a_fault_during_a_probation_adds_to_it);
     RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
     RUN_TEST(test_overcurrents_never_lock);
     RUN_TEST(test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again);
