@@ -76,7 +76,7 @@ static void offer(bq_board *b)
     *b = (bq_board){.name = BQHOST_BOARD,
                     .gpio = stm32_gpio(&pins),
                     .clock = stm32_clock(),
-                    .can = stm32_can_bus(&board_hw.can),
+                    .can = stm32_can_bus(),
                     .console = stm32_uart_stream(&board_hw.uart),
                     .mcu = stm32_mcu(&board_hw.boot)};
     board_offer(b);

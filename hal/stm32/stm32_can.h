@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file stm32_can.h
- * The bxCAN controller at 500 kbit/s. Receives data frames with standard ids STM32_CAN_FIRST_ID .. + 15,
- * sends anything. Frames leave in the order of their queueing (three mailboxes). Bus-off: the mailboxes are
- * emptied, the controller rejoins by itself after 128 times 11 recessive bits.
+ * The bxCAN controller at 500 kbit/s. Sends anything; where a board listens, receives data frames with
+ * standard ids STM32_CAN_FIRST_ID .. + 15. Frames leave in the order of their queueing (three mailboxes).
+ * Bus-off: the mailboxes are emptied, the controller rejoins by itself after 128 times 11 recessive bits.
  */
 #ifndef STM32_CAN_H
 #define STM32_CAN_H
@@ -19,11 +19,14 @@
 /** One controller; the board owns it. */
 typedef struct stm32_can {
     stm32_time *time;
+} stm32_can;
+
+/** What it received; the board owns it. A frame that arrives without room is dropped. */
+typedef struct stm32_can_inbox {
+    stm32_time *time;
     bq_can_frame rx[STM32_CAN_RX];
     volatile uint8_t put, get; /* run freely */
-    uint32_t dropped;          /**< frames that arrived without room */
-    uint32_t bus_offs;         /**< times the controller went off */
-} stm32_can;
+} stm32_can_inbox;
 
 /**
  * Clocks CAN1 and sets it up; its pins come from the board's table. Blocks at most 1 ms for the answer to the
@@ -33,11 +36,18 @@ typedef struct stm32_can {
  */
 bq_status stm32_can_init(stm32_can *can, stm32_time *time);
 
-/** For the board's CAN handlers: transmit, receive FIFO 0, status change (one vector on the F0, three on the
- * F4; each may call it). */
+/** For the board's CAN handlers: transmit, status change (one vector on the F0, two on the F4; each may call
+ * it). */
 void stm32_can_irq(stm32_can *can);
 
-/** send: BQ_OK; BQ_E_BUSY (three frames wait); BQ_E_BUS (off, or not yet on the bus); BQ_E_ARG. */
-bq_can stm32_can_bus(stm32_can *can);
+/** For a board that sends only. send: BQ_OK; BQ_E_BUSY (three frames wait); BQ_E_BUS (off, or not yet on the
+ * bus); BQ_E_ARG. receive: nothing ever comes. */
+bq_can stm32_can_bus(void);
+
+/** The same for a board that listens; call after stm32_can_init(). */
+bq_can stm32_can_listen(stm32_can_inbox *inbox, stm32_time *time);
+
+/** For its CAN handler of receive FIFO 0. */
+void stm32_can_rx_irq(stm32_can_inbox *inbox);
 
 #endif

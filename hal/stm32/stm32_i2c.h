@@ -13,17 +13,16 @@
 
 /** One bus; the board owns it. */
 typedef struct stm32_i2c {
-    stm32_time *time;
+    volatile bool busy;         /* a transaction runs */
+    volatile uint8_t step;      /* of the family's state machine, where it needs one */
+    bool owed;                  /* its outcome has not been told yet */
+    volatile bq_status result;  /* of the transaction; BQ_OK until something failed */
     uint8_t port, scl, sda, af; /* the pins, for recovery */
     uint8_t address7;
-    const bq_i2c_segment *segments;
-    uint8_t count, index; /* segments, the present one */
-    uint16_t done;        /* bytes of the present segment that have moved */
+    stm32_time *time;
+    const bq_i2c_segment *segment, *last; /* the present one */
+    uint8_t *at, *end;                    /* of its bytes that have not moved */
     uint32_t from_us, limit_us;
-    volatile uint8_t step;     /* of the family's state machine, where it needs one */
-    volatile bool busy;        /* a transaction runs */
-    bool owed;                 /* its outcome has not been told yet */
-    volatile bq_status result; /* of the transaction; BQ_OK until something failed */
 } stm32_i2c;
 
 /** Clocks I2C1 and starts it. The pins `scl`, `sda` of `port` come from the board's table as alternate

@@ -9,7 +9,6 @@ void stm32_uart_init(stm32_uart *uart, stm32_time *time, uint32_t baud)
     stm32_ring_init(&uart->rx, uart->rx_data, STM32_UART_RX);
     stm32_ring_init(&uart->tx, uart->tx_data, STM32_UART_TX);
     uart->time = time;
-    uart->dropped = 0;
     stm32_apb1_enable(STM32_APB1_USART2);
     stm32_usart_start((STM32_APB1_HZ + baud / 2u) / baud);
     stm32_irq_enable(STM32_IRQ_USART2, 2);
@@ -23,8 +22,8 @@ static void receive(stm32_uart *uart)
     uint8_t byte;
     bool damaged;
     while (stm32_usart_take(&byte, &damaged)) {
-        if (damaged || !stm32_ring_put(&uart->rx, byte)) {
-            uart->dropped++;
+        if (!damaged) {
+            (void)stm32_ring_put(&uart->rx, byte);
         }
         stm32_time_event(uart->time);
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file stm32_uart.h
- * USART2, 8N1, with a ring for each direction, as the stream of the console. The registers of the generation
- * are in stm32_usart.h of the family.
+ * USART2, 8N1, with a ring for each direction, as the stream of the console. Bytes that arrive without room
+ * or damaged are dropped. The registers of the generation are in stm32_usart.h of the family.
  */
 #ifndef STM32_UART_H
 #define STM32_UART_H
@@ -18,7 +18,6 @@
 typedef struct stm32_uart {
     stm32_ring rx, tx;
     stm32_time *time;
-    uint32_t dropped; /**< bytes that arrived without room, were damaged, or overran the receiver */
     uint8_t rx_data[STM32_UART_RX], tx_data[STM32_UART_TX];
 } stm32_uart;
 

@@ -40,33 +40,25 @@ void stm32_i2c_init(stm32_i2c *i2c, stm32_time *time, unsigned port, unsigned sc
 /* ---- the transaction
  * ------------------------------------------------------------------------------------------ */
 
-static const bq_i2c_segment *present(const stm32_i2c *i2c)
-{
-    return &i2c->segments[i2c->index];
-}
-
-static bool is_last(const stm32_i2c *i2c)
-{
-    return i2c->index + 1u == i2c->count;
-}
-
 /* Count and ending of the next at most 255 bytes. Without AUTOEND the bus is held after them (TC) for a
  * repeated START. */
 static uint32_t chunk(const stm32_i2c *i2c)
 {
-    const bq_i2c_segment *s = present(i2c);
-    uint32_t left = (uint32_t)(s->len - i2c->done);
+    uint32_t left = (uint32_t)(i2c->end - i2c->at);
     if (left > 255u) {
         return 255u << STM32_I2C_CR2_NBYTES_SHIFT | STM32_I2C_CR2_RELOAD;
     }
-    return left << STM32_I2C_CR2_NBYTES_SHIFT | (s->stop_after || is_last(i2c) ? STM32_I2C_CR2_AUTOEND : 0u);
+    return left << STM32_I2C_CR2_NBYTES_SHIFT |
+           (i2c->segment->stop_after || i2c->segment == i2c->last ? STM32_I2C_CR2_AUTOEND : 0u);
 }
 
-static void begin_segment(stm32_i2c *i2c)
+static void begin_segment(stm32_i2c *i2c, const bq_i2c_segment *s)
 {
-    i2c->done = 0;
+    i2c->segment = s;
+    i2c->at = s->data;
+    i2c->end = s->data + s->len;
     STM32_I2C1->cr2 = (uint32_t)i2c->address7 << STM32_I2C_CR2_SADD7_SHIFT |
-                      (present(i2c)->read ? STM32_I2C_CR2_RD_WRN : 0u) | chunk(i2c) | STM32_I2C_CR2_START;
+                      (s->read ? STM32_I2C_CR2_RD_WRN : 0u) | chunk(i2c) | STM32_I2C_CR2_START;
 }
 
 static void end(stm32_i2c *i2c)
@@ -86,22 +78,15 @@ static void cut_off(stm32_i2c *i2c, bq_status why)
 
 static void move_byte(stm32_i2c *i2c, uint32_t isr)
 {
-    const bq_i2c_segment *s = present(i2c);
+    bool more = i2c->at != i2c->end;
     if ((isr & STM32_I2C_ISR_RXNE) != 0u) {
         uint8_t byte = (uint8_t)STM32_I2C1->rxdr;
-        if (s->read && i2c->done < s->len) {
-            s->data[i2c->done++] = byte;
+        if (more) {
+            *i2c->at++ = byte;
         }
+    } else if ((isr & STM32_I2C_ISR_TXIS) != 0u) {
+        STM32_I2C1->txdr = more ? *i2c->at++ : 0xffu;
     }
-    if ((isr & STM32_I2C_ISR_TXIS) != 0u) {
-        STM32_I2C1->txdr = i2c->done < s->len ? s->data[i2c->done++] : 0xffu;
-    }
-}
-
-static void next_segment(stm32_i2c *i2c)
-{
-    i2c->index++;
-    begin_segment(i2c);
 }
 
 /* After a NACK the master sends STOP by itself, with and without AUTOEND; TXDR may hold a byte that nobody
@@ -116,8 +101,8 @@ static void take_nack(stm32_i2c *i2c)
 static void take_stop(stm32_i2c *i2c)
 {
     STM32_I2C1->icr = STM32_I2C_ISR_STOPF;
-    if (i2c->result == BQ_OK && !is_last(i2c)) {
-        next_segment(i2c);
+    if (i2c->result == BQ_OK && i2c->segment != i2c->last) {
+        begin_segment(i2c, i2c->segment + 1);
     } else {
         end(i2c);
     }
@@ -143,7 +128,7 @@ void stm32_i2c_irq(stm32_i2c *i2c)
     } else if ((isr & STM32_I2C_ISR_TCR) != 0u) {
         STM32_I2C1->cr2 = (STM32_I2C1->cr2 & ~CHUNK) | chunk(i2c);
     } else if ((isr & STM32_I2C_ISR_TC) != 0u) {
-        next_segment(i2c);
+        begin_segment(i2c, i2c->segment + 1);
     }
     if ((isr & STM32_I2C_ISR_STOPF) != 0u) {
         take_stop(i2c);
@@ -166,16 +151,14 @@ static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *se
         return BQ_E_ARBITRATION;
     }
     i2c->address7 = address7;
-    i2c->segments = segments;
-    i2c->count = (uint8_t)count;
-    i2c->index = 0;
+    i2c->last = segments + count - 1u;
     i2c->result = BQ_OK;
     i2c->limit_us = stm32_i2c_limit_us(segments, count);
     i2c->from_us = stm32_now_us();
     i2c->owed = true;
     i2c->busy = true;
     STM32_I2C1->cr1 = STM32_I2C_CR1_PE | INTERRUPTS;
-    begin_segment(i2c);
+    begin_segment(i2c, segments);
     return BQ_OK;
 }
 

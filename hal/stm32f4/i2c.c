@@ -76,24 +76,22 @@ static void interrupts(uint32_t which)
 /* ---- the transaction
  * --------------------------------------------------------------------------------------- */
 
-static const bq_i2c_segment *present(const stm32_i2c *i2c)
-{
-    return &i2c->segments[i2c->index];
-}
-
-static bool is_last(const stm32_i2c *i2c)
-{
-    return i2c->index + 1u == i2c->count;
-}
-
 static bool wants_stop(const stm32_i2c *i2c)
 {
-    return is_last(i2c) || present(i2c)->stop_after;
+    return i2c->segment == i2c->last || i2c->segment->stop_after;
 }
 
 static uint32_t left(const stm32_i2c *i2c)
 {
-    return (uint32_t)(present(i2c)->len - i2c->done);
+    return (uint32_t)(i2c->end - i2c->at);
+}
+
+static void enter(stm32_i2c *i2c, const bq_i2c_segment *s)
+{
+    i2c->segment = s;
+    i2c->at = s->data;
+    i2c->end = s->data + s->len;
+    i2c->step = STEP_START;
 }
 
 /* Asks for what follows the present segment. ACK and POS are off afterwards. */
@@ -105,22 +103,20 @@ static void ask(const stm32_i2c *i2c)
 /* ask() was called and every byte of the segment has moved. */
 static void close_segment(stm32_i2c *i2c)
 {
-    i2c->done = 0;
     if (wants_stop(i2c)) {
         interrupts(0);
         i2c->step = STEP_STOP;
         stm32_time_event(i2c->time);
     } else {
         interrupts(CR2_ITERREN | CR2_ITEVTEN);
-        i2c->index++;
-        i2c->step = STEP_START;
+        enter(i2c, i2c->segment + 1);
     }
 }
 
 /* SB: START has been sent. Two bytes to read: NACK is decided one byte ahead (POS). */
 static void send_address(stm32_i2c *i2c)
 {
-    const bq_i2c_segment *s = present(i2c);
+    const bq_i2c_segment *s = i2c->segment;
     uint32_t ack = s->read && s->len >= 2u ? CR1_ACK : 0u;
     uint32_t pos = s->read && s->len == 2u ? CR1_POS : 0u;
     I2C1->cr1 = CR1_PE | ack | pos;
@@ -131,7 +127,7 @@ static void send_address(stm32_i2c *i2c)
 /* ADDR, which reading SR1 (done) and SR2 clears; until then the clock is held. */
 static void addressed(stm32_i2c *i2c)
 {
-    const bq_i2c_segment *s = present(i2c);
+    const bq_i2c_segment *s = i2c->segment;
     uint32_t mask;
     i2c->step = STEP_MOVE;
     if (!s->read) {
@@ -157,7 +153,7 @@ static void addressed(stm32_i2c *i2c)
 
 static void take_byte(stm32_i2c *i2c)
 {
-    present(i2c)->data[i2c->done++] = (uint8_t)I2C1->dr;
+    *i2c->at++ = (uint8_t)I2C1->dr;
 }
 
 /* The last three bytes are read with the clock held: BTF = one in DR, one behind it. */
@@ -179,7 +175,7 @@ static void read_end(stm32_i2c *i2c)
 
 static void read_on(stm32_i2c *i2c, uint32_t sr1)
 {
-    if (present(i2c)->len == 1u) {
+    if (i2c->segment->len == 1u) {
         if ((sr1 & SR1_RXNE) != 0u) {
             take_byte(i2c);
             close_segment(i2c);
@@ -200,7 +196,7 @@ static void write_on(stm32_i2c *i2c, uint32_t sr1)
 {
     if (left(i2c) > 0u) {
         if ((sr1 & SR1_TXE) != 0u) {
-            I2C1->dr = present(i2c)->data[i2c->done++];
+            I2C1->dr = *i2c->at++;
         }
         if (left(i2c) == 0u) {
             interrupts(CR2_ITERREN | CR2_ITEVTEN); /* BTF ends it; TXE alone would come at once */
@@ -249,7 +245,7 @@ void stm32_i2c_irq(stm32_i2c *i2c)
         send_address(i2c);
     } else if (i2c->step == STEP_ADDRESS && (sr1 & SR1_ADDR) != 0u) {
         addressed(i2c);
-    } else if (i2c->step == STEP_MOVE && present(i2c)->read) {
+    } else if (i2c->step == STEP_MOVE && i2c->segment->read) {
         read_on(i2c, sr1);
     } else if (i2c->step == STEP_MOVE) {
         write_on(i2c, sr1);
@@ -259,10 +255,9 @@ void stm32_i2c_irq(stm32_i2c *i2c)
 /* ---- bq_i2c
  * ------------------------------------------------------------------------------------------------ */
 
-static void begin(stm32_i2c *i2c)
+static void begin(stm32_i2c *i2c, const bq_i2c_segment *s)
 {
-    i2c->done = 0;
-    i2c->step = STEP_START;
+    enter(i2c, s);
     I2C1->cr1 = CR1_PE | CR1_START;
     interrupts(CR2_ITERREN | CR2_ITEVTEN);
 }
@@ -288,15 +283,13 @@ static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *se
         }
     }
     i2c->address7 = address7;
-    i2c->segments = segments;
-    i2c->count = (uint8_t)count;
-    i2c->index = 0;
+    i2c->last = segments + count - 1u;
     i2c->result = BQ_OK;
     i2c->limit_us = stm32_i2c_limit_us(segments, count);
     i2c->from_us = stm32_now_us();
     i2c->owed = true;
     i2c->busy = true;
-    begin(i2c);
+    begin(i2c, segments);
     return BQ_OK;
 }
 
@@ -316,9 +309,8 @@ static void after_stop(stm32_i2c *i2c)
     if ((I2C1->cr1 & CR1_STOP) != 0u) {
         return;
     }
-    if (i2c->result == BQ_OK && !is_last(i2c)) {
-        i2c->index++;
-        begin(i2c);
+    if (i2c->result == BQ_OK && i2c->segment != i2c->last) {
+        begin(i2c, i2c->segment + 1);
     } else {
         i2c->step = STEP_IDLE;
         i2c->busy = false;

@@ -50,7 +50,7 @@ void can1_tx_handler(void)
 
 void can1_rx0_handler(void)
 {
-    stm32_can_irq(&board_hw.can);
+    stm32_can_rx_irq(&board_hw.inbox);
 }
 
 void can1_sce_handler(void)
@@ -75,6 +75,7 @@ void board_peripherals(void)
 void board_offer(bq_board *b)
 {
     b->nvm = stm32_nvm_memory(&settings);
+    b->can = stm32_can_listen(&board_hw.inbox, &board_hw.time);
     b->ammeter = stm32_adc_ammeter(&board_hw.adc);
 }
 

@@ -25,6 +25,7 @@ typedef struct board_parts {
     stm32_time time;
     stm32_uart uart;
     stm32_can can;
+    stm32_can_inbox inbox;
     stm32_spi spi;
     stm32_adc adc;
 } board_parts;

@@ -18,11 +18,11 @@
 
 /** The peripherals in use. */
 typedef struct board_parts {
-    bq_boot boot;
+    stm32_i2c i2c; /* small ones that interrupts look at first: a Cortex-M0 reaches the first bytes cheaply */
     stm32_time time;
-    stm32_uart uart;
     stm32_can can;
-    stm32_i2c i2c;
+    bq_boot boot;
+    stm32_uart uart;
 } board_parts;
 
 /** The configuration: what the settings hold. */

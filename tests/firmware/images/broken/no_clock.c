@@ -3,11 +3,11 @@
 #include "defect.h"
 #include "stm32_can.h"
 
-bq_can __real_stm32_can_bus(stm32_can *can);
-bq_can __wrap_stm32_can_bus(stm32_can *can);
+bq_can __real_stm32_can_bus(void);
+bq_can __wrap_stm32_can_bus(void);
 
-bq_can __wrap_stm32_can_bus(stm32_can *can)
+bq_can __wrap_stm32_can_bus(void)
 {
     STM32_RCC_APB1ENR &= ~STM32_APB1_CAN1;
-    return __real_stm32_can_bus(can);
+    return __real_stm32_can_bus();
 }

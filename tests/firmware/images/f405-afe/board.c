@@ -28,11 +28,6 @@ void can1_tx_handler(void)
     stm32_can_irq(&board_hw.can);
 }
 
-void can1_rx0_handler(void)
-{
-    stm32_can_irq(&board_hw.can);
-}
-
 void can1_sce_handler(void)
 {
     stm32_can_irq(&board_hw.can);

@@ -53,7 +53,7 @@ static void start(void)
 
 static void tell(uint32_t id, bq_status status)
 {
-    bq_can bus = stm32_can_bus(&can);
+    bq_can bus = stm32_can_bus();
     bq_can_frame frame = {.id = id, .len = 3};
     frame.data[0] = (uint8_t)status;
     frame.data[1] = stored[0];
