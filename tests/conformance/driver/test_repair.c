@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the service of one device may and may not touch, and repairs that succeed: PL-SEQ-08, PL-SEQ-15. */
+#include "bench.h"
+
+static void scans(int n, uint32_t pause_ms)
+{
+    for (int i = 0; i < n; i++) {
+        (void)bench_scan();
+        bench_wait_ms(pause_ms);
+    }
+    bench_sample();
+}
+
+/* The EPROM was read wrongly once: after one RESET the device is as good as before. */
+/* proves: PL-SEQ-15-02, PL-SEQ-15-01 */
+static void an_eprom_error_that_a_reset_cures(void)
+{
+    uint16_t seen = 0;
+    bench_ready(3, NULL);
+    sim_pl_damage_otp(&b.pl, 2, 0x45, 0x03);
+    bench_raw_write(2, 0x3a, 0x27);
+    TEST_ASSERT_EQUAL_HEX8(0x20, PEEK(2, 0x20) & 0x20);
+    TEST_ASSERT_EQUAL_HEX8(0x20, PEEK(2, 0x21) & 0x20);
+    sim_pl_set_otp(&b.pl, 2, 0x45, 0x00);
+    bench_mark();
+    for (int i = 0; i < 8; i++) {
+        scans(1, 150);
+        seen |= MODULE(2)->faults;
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, seen & BQ_F_DEFECTIVE);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_MEMORY, seen & BQ_F_MEMORY);
+    TEST_ASSERT_EQUAL_INT(1, bench_count(W(2), 0x3c));
+    TEST_ASSERT_EQUAL_INT(0, bench_count(W(1), 0x3c) + bench_count(W(3), 0x3c));
+    for (int d = 1; d <= 3; d++) {
+        TEST_ASSERT_EQUAL_HEX8(0x80 | d, PEEK(d, 0x3b));
+        TEST_ASSERT_EQUAL_HEX8(0x85, PEEK(d, 0x45));
+        TEST_ASSERT_EQUAL_HEX8(0x00, PEEK(d, 0x20));
+        TEST_ASSERT_EQUAL_HEX8(0x00, PEEK(d, 0x21));
+        TEST_ASSERT_EQUAL_HEX16(0, MODULE(d)->faults);
+        TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, CELL(d, 1)->quality);
+    }
+    bench_no_misuse();
+}
+
+/* Heat in one device ends the balancing of all, and nothing else is written to CB_CTRL. */
+/* proves: PL-SEQ-15-03 */
+static void heat_ends_all_balancing(void)
+{
+    int off = 0;
+    bench_ready(3, NULL);
+    EXPECT_STATUS(BQ_OK, bench_balance(1, 0x15));
+    sim_pl_set_tdie(&b.pl, 2, 150);
+    bench_wait_ms(10);
+    bench_mark();
+    scans(3, 20);
+    for (uint32_t i = 0; i < b.packets; i++) {
+        if (IS_WRITE(&b.log[i]) && b.log[i].tx[1] == 0x32) {
+            TEST_ASSERT_EQUAL_HEX8(0x00, b.log[i].tx[2]);
+            off += b.log[i].tx[0] == BROADCAST;
+        }
+    }
+    TEST_ASSERT_TRUE(off > 0);
+    for (int d = 1; d <= 3; d++) {
+        TEST_ASSERT_EQUAL_HEX8(0x00, sim_pl_cb(&b.pl, d));
+    }
+}
+
+/* A stray FORCE is cleared alone: what the comparators latched beside it waits for the acknowledgement. */
+/* proves: PL-SEQ-08-08, PL-SEQ-08-06 */
+static void clearing_force_leaves_the_comparators(void)
+{
+    bench_ready(2, NULL);
+    sim_pl_set_cell(&b.pl, 1, 2, 4.3);
+    sim_pl_set_cell(&b.pl, 2, 2, 2.6);
+    sim_pl_set_ts_ratio(&b.pl, 1, 1, 0.32);
+    sim_pl_set_ts_ratio(&b.pl, 2, 2, 0.32);
+    bench_wait_ms(1500);
+    for (int d = 1; d <= 2; d++) { /* the causes are gone, the flags are latched */
+        sim_pl_set_cell(&b.pl, d, 2, 3.6);
+        sim_pl_set_ts_ratio(&b.pl, d, d, 0.1369);
+        bench_raw_write(d, 0x21, 0x10);
+        bench_raw_write(d, 0x20, 0x10);
+    }
+    scans(2, 20);
+    TEST_ASSERT_EQUAL_HEX8(0x01, PEEK(1, 0x21));
+    TEST_ASSERT_EQUAL_HEX8(0x02, PEEK(2, 0x21));
+    TEST_ASSERT_EQUAL_HEX8(0x01, PEEK(1, 0x20));
+    TEST_ASSERT_EQUAL_HEX8(0x02, PEEK(2, 0x20));
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV | BQ_F_OVERTEMP, MODULE(1)->faults & (BQ_F_CELL_OV | BQ_F_OVERTEMP));
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_UV | BQ_F_OVERTEMP, MODULE(2)->faults & (BQ_F_CELL_UV | BQ_F_OVERTEMP));
+    EXPECT_STATUS(BQ_OK, bench_acknowledge());
+    scans(1, 0);
+    TEST_ASSERT_EQUAL_HEX16(0, MODULE(1)->faults | MODULE(2)->faults);
+    bench_no_misuse();
+}
+
+/* The thermistors of a device that was shut down need their time again. */
+/* proves: PL-SEQ-15-03 */
+static void sensors_settle_after_heat(void)
+{
+    uint64_t cooled = 0, valid = 0;
+    bench_up(2, NULL);
+    b.config.sensor_settle_ms = 400;
+    bench_ready_from();
+    bench_wait_ms(1000);
+    scans(1, 0);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, b.temps[2].quality);
+    sim_pl_set_tdie(&b.pl, 2, 150);
+    bench_wait_ms(10);
+    scans(2, 20);
+    TEST_ASSERT_EQUAL_HEX8(0, b.temps[2].quality & BQ_Q_VALID);
+    sim_pl_set_tdie(&b.pl, 2, 40);
+    for (int i = 0; i < 200 && valid == 0; i++) {
+        scans(1, 20);
+        cooled = cooled == 0 && sim_pl_get_mode(&b.pl, 2) == SIM_PL_ACTIVE ? sim_pl_now(&b.pl) : cooled;
+        valid = (b.temps[2].quality & BQ_Q_VALID) != 0 ? sim_pl_now(&b.pl) : 0;
+    }
+    TEST_ASSERT_TRUE(cooled != 0 && valid != 0);
+    TEST_ASSERT_TRUE(valid - cooled >= 380 * SIM_PL_MS); /* seen one pause of 20 ms late */
+    TEST_ASSERT_TRUE(valid - cooled <= 600 * SIM_PL_MS);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(an_eprom_error_that_a_reset_cures);
+    RUN_TEST(heat_ends_all_balancing);
+    RUN_TEST(clearing_force_leaves_the_comparators);
+    RUN_TEST(sensors_settle_after_heat);
+    return UNITY_END();
+}
