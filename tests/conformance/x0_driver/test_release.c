@@ -255,6 +255,44 @@ static void test_a_fault_during_a_probation_adds_to_it(void)
     NO_MISUSE();
 }
 
+/* No reading counts from the fault to a scan and 2 s after the configuration, also while the bit reads as
+ * clear.
+ */
+/* proves: X0-SEQ-35, X0-XRDY-04, X0-AMB-66 */
+static void test_an_internal_fault_ends_the_use_of_readings(void)
+{
+    uint64_t struck;
+    on_duty("bq7693003", 320);
+    (void)sim_x0_strike_xready(&b.chip);
+    struck = b.chip.now;
+    while (b.chip.now < struck + (3000 + 1000 + 2250) * MS) {
+        bench_serve(PERIOD, PERIOD);
+        TEST_ASSERT_FALSE(b.cells[0].quality & BQ_Q_VALID);
+        TEST_ASSERT_FALSE(b.cells[9].quality & BQ_Q_VALID);
+    }
+    bench_serve(1000, PERIOD);
+    TEST_ASSERT_EQUAL(BQ_Q_VALID, b.cells[9].quality);
+    NO_MISUSE();
+}
+
+/* A person has looked: the short circuits before do not count any more. */
+/* proves: X0-SEQ-32 */
+static void test_unlocking_begins_anew(void)
+{
+    on_duty("bq7692003", 320);
+    for (int n = 0; n < 5; n++) {
+        strike(-0.150, 0.2);
+        TEST_ASSERT_TRUE(until_on(30000) < 30000);
+    }
+    strike(-0.150, 0.2);
+    TEST_ASSERT_EQUAL(60000, until_on(60000));
+    bq769x0_unlock(&b.d);
+    TEST_ASSERT_TRUE(until_on(30000) < 30000);
+    strike(-0.150, 0.2); /* within 10 s: again, but the first repetition */
+    TEST_ASSERT_TRUE(until_on(30000) < 3000);
+    NO_MISUSE();
+}
+
 /* proves: X0-SEQ-32 */
 static void test_a_short_circuit_within_ten_seconds_waits_longer(void)
 {
@@ -309,6 +347,8 @@ int main(void)
     RUN_TEST(test_the_first_look_waits_for_the_pin);
     RUN_TEST(test_looks_come_with_every_scan);
     RUN_TEST(test_a_fault_during_a_probation_adds_to_it);
+    RUN_TEST(test_an_internal_fault_ends_the_use_of_readings);
+    RUN_TEST(test_unlocking_begins_anew);
     RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
     RUN_TEST(test_overcurrents_never_lock);
     RUN_TEST(test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again);
