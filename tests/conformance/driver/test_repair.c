@@ -120,6 +120,37 @@ static void sensors_settle_after_heat(void)
     TEST_ASSERT_TRUE(valid - cooled <= 600 * SIM_PL_MS);
 }
 
+/* Reads of the flags of device 1 come to nothing; everything else works. */
+static bool no_flags(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n)
+{
+    (void)ctx;
+    if (tx[0] != RD(1) || tx[1] != 0x20) {
+        return false;
+    }
+    memset(rx, 0, n);
+    return true;
+}
+
+/* A device that says FAULT or ALERT and does not say why is not believed, and is again once it does. */
+/* proves: PL-SEQ-06-08, PL-SEQ-08-02 */
+static void flags_that_cannot_be_read_leave_no_valid_reading(void)
+{
+    bench_ready(2, NULL);
+    sim_pl_set_cell(&b.pl, 1, 5, 4.3);
+    bench_wait_ms(1500);
+    sim_pl_bus_fault(&b.pl)->hook = no_flags;
+    (void)bench_scan();
+    bench_sample();
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_COMM, CELL(1, 1)->quality);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_COMM, MODULE(1)->faults & BQ_F_COMM);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, CELL(2, 1)->quality);
+    TEST_ASSERT_EQUAL_HEX16(0, MODULE(2)->faults);
+    sim_pl_bus_fault(&b.pl)->hook = NULL;
+    scans(2, 150);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, CELL(1, 1)->quality);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, MODULE(1)->faults);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -127,5 +158,6 @@ int main(void)
     RUN_TEST(heat_ends_all_balancing);
     RUN_TEST(clearing_force_leaves_the_comparators);
     RUN_TEST(sensors_settle_after_heat);
+    RUN_TEST(flags_that_cannot_be_read_leave_no_valid_reading);
     return UNITY_END();
 }

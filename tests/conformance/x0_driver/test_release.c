@@ -255,6 +255,27 @@ static void test_a_fault_during_a_probation_adds_to_it(void)
     NO_MISUSE();
 }
 
+/* The register byte of a read is under no CRC: with one bit of it wrong another register answers, and what it
+ * holds looks like faults.
+ * Nothing goes off for that. */
+/* proves: X0-I2C-16, X0-SEQ-28 */
+static void test_another_register_in_place_of_the_status(void)
+{
+    for (int bit = 8; bit < 16; bit++) {
+        on_duty("bq7692003", 320);
+        b.spoil_at = b.count + 1; /* a scan begins with SYS_STAT */
+        b.spoil_kind = SPOIL_FLIP;
+        b.flip_bit = bit;
+        TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
+        TEST_ASSERT_EQUAL(0x00, bench_log(b.spoil_at - 1)->reg);
+        TEST_ASSERT_EQUAL_HEX16(0, b.module.faults);
+        TEST_ASSERT_TRUE(sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip));
+        bench_serve(1000, 250);
+        TEST_ASSERT_EQUAL_HEX16(0, b.module.faults);
+        TEST_ASSERT_TRUE(sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip));
+    }
+}
+
 /* No reading counts from the fault to a scan and 2 s after the configuration, also while the bit reads as
  * clear.
  */
@@ -347,6 +368,7 @@ int main(void)
     RUN_TEST(test_the_first_look_waits_for_the_pin);
     RUN_TEST(test_looks_come_with_every_scan);
     RUN_TEST(test_a_fault_during_a_probation_adds_to_it);
+    RUN_TEST(test_another_register_in_place_of_the_status);
     RUN_TEST(test_an_internal_fault_ends_the_use_of_readings);
     RUN_TEST(test_unlocking_begins_anew);
     RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
