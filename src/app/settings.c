@@ -61,72 +61,54 @@ bool settings_usable(const bq_settings *s, const bq_nvm *nvm)
     return words <= BQ_SETTINGS_MAX_WORDS && words * 4u <= nvm->sector_bytes;
 }
 
-/* ---- finding --------------------------------------------------------------------------------- */
+/* ---- reading --------------------------------------------------------------------------------- */
 
-static bool erased(const uint8_t *block)
+/* Reads a sector word by word. After a failure every word is 0 and the status stays. */
+typedef struct reader {
+    const bq_nvm *nvm;
+    uint32_t at, crc; /* offset of the next word; of the words read */
+    uint8_t sector;
+    bq_status status;
+} reader;
+
+static uint32_t next_word(reader *r)
 {
-    for (unsigned i = 0; i < SETTINGS_BLOCK; i++) {
-        if (block[i] != 0xffu) {
-            return false;
-        }
+    uint8_t bytes[4] = {0, 0, 0, 0};
+
+    if (r->status == BQ_OK) {
+        r->status = r->nvm->ops->read(r->nvm->ctx, r->sector, r->at, bytes, sizeof bytes);
     }
-    return true;
-}
-
-static bool length_ok(const bq_nvm *nvm, uint32_t words)
-{
-    return words >= SETTINGS_HEAD && words <= BQ_SETTINGS_MAX_WORDS && words % 2u == 0u &&
-           words * 4u <= nvm->sector_bytes;
-}
-
-/* The blocks behind the commit mark; `crc` of them, words 2 to 4 into `r`. */
-static bq_status read_body(const bq_nvm *nvm, settings_record *r, uint32_t *crc)
-{
-    uint8_t block[SETTINGS_BLOCK];
-    uint32_t words = SETTINGS_HEAD + 1u;
-
-    *crc = 0;
-    for (uint32_t at = 2; at < words; at += 2u) {
-        const bq_status status = nvm->ops->read(nvm->ctx, r->sector, at * 4u, block, sizeof block);
-        if (status != BQ_OK) {
-            return status;
-        }
-        *crc = bq_crc32(*crc, block, sizeof block);
-        if (at == 2u) {
-            r->format = settings_get32(block);
-            r->layout = settings_get32(block + 4);
-            words = r->format & 0xffffu;
-            if (!length_ok(nvm, words)) {
-                return BQ_E_CRC;
-            }
-        } else if (at == 4u) {
-            r->sequence = settings_get32(block);
-        }
-    }
-    return BQ_OK;
+    r->at += 4u;
+    r->crc = bq_crc32(r->crc, bytes, sizeof bytes);
+    return settings_get32(bytes);
 }
 
 /* BQ_OK: intact. BQ_E_NOT_FOUND: begins erased. BQ_E_CRC: anything else. */
-static bq_status read_record(const bq_nvm *nvm, settings_record *r)
+static bq_status read_record(const bq_nvm *nvm, settings_record *record)
 {
-    uint8_t mark[SETTINGS_BLOCK];
-    uint32_t crc;
-    bq_status status = nvm->ops->read(nvm->ctx, r->sector, 0, mark, sizeof mark);
+    reader r = {nvm, 0, 0, record->sector, BQ_OK};
+    const uint32_t magic = next_word(&r), crc = next_word(&r);
+    uint32_t bytes;
 
-    if (status != BQ_OK) {
-        return status;
+    r.crc = 0;
+    record->format = next_word(&r);
+    record->layout = next_word(&r);
+    record->sequence = next_word(&r);
+    bytes = (record->format & 0xffffu) * 4u;
+    if (r.status != BQ_OK) {
+        return r.status;
     }
-    if (erased(mark)) {
+    if ((magic & crc) == UINT32_MAX) {
         return BQ_E_NOT_FOUND;
     }
-    if (settings_get32(mark) != BQ_SETTINGS_MAGIC) {
+    if (magic != BQ_SETTINGS_MAGIC || bytes < SETTINGS_HEAD * 4u || bytes > BQ_SETTINGS_MAX_WORDS * 4u ||
+        bytes % SETTINGS_BLOCK != 0u || bytes > nvm->sector_bytes) {
         return BQ_E_CRC;
     }
-    status = read_body(nvm, r, &crc);
-    if (status == BQ_OK && crc != settings_get32(mark + 4)) {
-        status = BQ_E_CRC;
+    while (r.at < bytes) {
+        (void)next_word(&r);
     }
-    return status;
+    return r.status != BQ_OK || r.crc == crc ? r.status : BQ_E_CRC;
 }
 
 bq_status settings_newest(const bq_nvm *nvm, settings_record *newest)
@@ -149,26 +131,22 @@ bq_status settings_newest(const bq_nvm *nvm, settings_record *newest)
     return found;
 }
 
-/* ---- reading --------------------------------------------------------------------------------- */
-
 /* All values, compared with their fields or stored into them. */
 static bq_status read_values(const bq_settings *s, const bq_nvm *nvm, uint8_t sector, bool store)
 {
+    reader r = {nvm, SETTINGS_HEAD * 4u, 0, sector, BQ_OK};
     settings_walk w = settings_begin(s);
     void *object = NULL;
-    uint32_t offset = SETTINGS_HEAD * 4u;
-    const bq_field *f = settings_next(&w, &object);
+    const bq_field *f;
 
-    for (; f != NULL; f = settings_next(&w, &object)) {
-        uint8_t word[4];
-        const bq_status status = nvm->ops->read(nvm->ctx, sector, offset, word, sizeof word);
-        if (status != BQ_OK) {
-            return status;
+    while ((f = settings_next(&w, &object)) != NULL) {
+        const uint32_t word = next_word(&r);
+        if (r.status != BQ_OK) {
+            return r.status;
         }
-        offset += 4u;
         if (store) {
-            bq_field_store(*f, object, settings_get32(word));
-        } else if (!settings_field_fits(*f, settings_get32(word))) {
+            bq_field_store(*f, object, word);
+        } else if (!settings_field_fits(*f, word)) {
             return BQ_E_RANGE;
         }
     }
