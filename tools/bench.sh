@@ -159,7 +159,7 @@ afe_size_part() {
     cat <<TEXT
 
 The bq769x0 driver by itself on a Cortex-M0+, bytes of flash of driver and core, without the table of the thermistor, which is the user's
-(456 bytes for \`bq_thermistor_103at\`). The base set configures a part that is known with read-back, its limits made codes by the compiler
+(146 bytes for \`bq769x0_codes_103at\`). The base set configures a part that is known with read-back, its limits made codes by the compiler
 (\`bq769x0_known.h\`), measures in three transactions, switches FETs and balancing outputs with read-back, reports faults and clears them on
 request; it neither probes nor recovers by itself. No writable data, no floating point: the command fails otherwise.
 

@@ -43,11 +43,11 @@ int x0_job_configure(bq769x0 *d, bq769x0_frame *f)
     d->trim = 0; /* no device has this one */
     for (;;) {
         SEQ_TRY(1, X0_FETCH(BQ769X0_ADCGAIN2, 1));
-        f->i = d->answer;
+        f->word = d->answer;
         SEQ_TRY(2, X0_FETCH(BQ769X0_ADCGAIN1, 2));
-        f->word = (uint32_t)f->i << 24 | (uint32_t)d->answer << 16 | (uint32_t)x0_data(d)[1] << 8;
+        f->word = f->word << 16 | (uint32_t)d->answer << 8 | x0_data(d)[1];
         SEQ_TRY(3, X0_FETCH(BQ769X0_PROTECT3, 1));
-        trim = f->word | d->answer;
+        trim = f->word << 8 | d->answer;
         if (d->trim == trim) {
             break;
         }

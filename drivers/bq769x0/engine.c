@@ -24,11 +24,12 @@ void x0_pause(bq769x0 *d, uint32_t us)
     d->due_us = d->now_us + us + 1u;
 }
 
-void x0_push(bq769x0 *d, bq769x0_job job, int op)
+int x0_push(bq769x0 *d, bq769x0_job job, int op)
 {
     bq769x0_frame *f = ++d->top;
     bq769x0_frame fresh = {job, 0, op, 0, 0, 0, 0, 0};
     *f = fresh;
+    return op;
 }
 
 bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job)
@@ -40,7 +41,7 @@ bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job)
         return BQ_E_STATE;
     }
     x0_pause(d, (uint32_t)-1);
-    x0_push(d, job, 0);
+    (void)x0_push(d, job, 0);
     return BQ_OK;
 }
 
@@ -52,8 +53,9 @@ static void step(bq769x0 *d)
     int next = f->job(d, f);
     if (next > 0) {
         f->next = next;
+        f->at = (uint8_t)next;
         if (next >> 24 != 0) {
-            x0_push(d, x0_job_transfer, next);
+            (void)x0_push(d, x0_job_transfer, next);
         }
         return;
     }

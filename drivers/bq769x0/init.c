@@ -20,7 +20,7 @@ static bool wired(const bq769x0_config *c, unsigned in_use)
 
 static bool in_range(const bq769x0_config *c, unsigned groups)
 {
-    return c->sensors <= groups && (c->sensors == 0u || c->thermistor != NULL) &&
+    return c->sensors <= groups && (c->sensors == 0u || c->sensor != NULL) &&
            c->shunt_uohm - 100u <= 100000u - 100u;
 }
 
@@ -57,8 +57,8 @@ bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *k
     k.sensor_ctx = &c->die_v25_uv;
     if (c->sensors != 0u) {
         k.registers[BQ769X0_SYS_CTRL1] = BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL;
-        k.sensor = bq769x0_sensor_thermistor;
-        k.sensor_ctx = c->thermistor;
+        k.sensor = c->sensor;
+        k.sensor_ctx = c->sensor_ctx;
     }
     k.registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
     k.address7 = c->address7;

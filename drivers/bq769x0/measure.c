@@ -9,26 +9,21 @@ static int fetch_codes(unsigned first, unsigned n)
     return X0_FETCH(BQ769X0_VC1_HI, 0) + (int)(first << 17) + (int)(n << 25);
 }
 
-/* `n` codes from x0_data() to d->fresh. */
-static void take_codes(bq769x0 *d, unsigned first, unsigned n)
+/* `n` codes from x0_data() to d->fresh; the sum of those that are inputs, whose upper bits are no data
+ * (X0-BIT-16). */
+static uint32_t take_codes(bq769x0 *d, unsigned first, unsigned n)
 {
     const uint8_t *p = x0_data(d);
-    for (uint16_t *to = &d->fresh[first]; n != 0u; n--, p += 2) {
-        *to++ = (uint16_t)(p[0] * 256u + p[1]);
-    }
-}
-
-/* Upper bits of cells and temperatures are no data (X0-BIT-16). BAT is a quarter of the sum of all codes of
- * the same scan, within 1 (X0-BAT-05). A block read across a publication fails this too: it is then read
- * again. */
-static bool plausible(bq769x0 *d)
-{
     uint32_t sum = 0;
-    for (uint16_t *code = d->fresh; code != &d->fresh[X0_BAT]; code++) {
-        *code &= 0x3fffu;
-        sum += *code;
+    for (uint16_t *to = &d->fresh[first]; n != 0u; n--, p += 2) {
+        unsigned code = p[0] * 256u + p[1];
+        if (to < &d->fresh[X0_BAT]) {
+            code &= 0x3fffu;
+            sum += code;
+        }
+        *to++ = (uint16_t)code;
     }
-    return sum != 0u && d->fresh[X0_BAT] + 1u - sum / 4u <= 2u;
+    return sum;
 }
 
 /* Cells close up, whatever inputs carry them; another source of the temperatures leaves those alone. */
@@ -45,11 +40,13 @@ static void keep_codes(bq769x0 *d)
     }
 }
 
-/* What is refused leaves the codes of the last good picture alone. */
-static void take_picture(bq769x0 *d)
+/* BAT is a quarter of the sum of all inputs of the same scan, within 1 (X0-BAT-05). A block read across a
+ * publication fails this too: it is then read again. What is refused leaves the codes of the last good
+ * picture alone. */
+static void take_picture(bq769x0 *d, uint32_t sum)
 {
     unsigned quality = BQ_Q_CHIP;
-    if (!plausible(d)) {
+    if (sum == 0u || d->fresh[X0_BAT] + 1u - sum / 4u > 2u) {
         x0_bump(&d->stats.implausible);
     } else if ((d->stat & BQ769X0_STAT_XREADY) == 0u) {
         quality = BQ_Q_VALID;
@@ -77,18 +74,19 @@ void x0_take_current(bq769x0 *d, uint16_t raw)
  * fewer bytes. f->i, f->x: first and number of the codes. */
 int x0_job_picture(bq769x0 *d, bq769x0_frame *f)
 {
+    uint32_t sum;
     SEQ_BEGIN(f)
     for (;;) {
         f->i = d->known.first;
         for (;;) {
             SEQ_TRY(1, fetch_codes(f->i, f->i != 0u ? 5u : d->known.codes));
-            take_codes(d, f->i, (unsigned)f->next >> 25);
+            sum = take_codes(d, f->i, (unsigned)f->next >> 25);
             if (f->i == 0u) {
                 break;
             }
             f->i = 0;
         }
-        take_picture(d);
+        take_picture(d, sum);
         if (x0_valid(d) || f->tries != 0u) {
             break;
         }
@@ -110,7 +108,7 @@ int x0_job_measure(bq769x0 *d, bq769x0_frame *f)
     if (d->result == BQ_OK) {
         d->stat = d->answer & BQ769X0_STAT_CLEAR;
         if (!d->no_data) {
-            SEQ_CALL(2, x0_run(d, x0_job_picture));
+            SEQ_RUN_CALL(2, x0_job_picture);
         }
     }
     if (d->result != BQ_OK) {

@@ -37,16 +37,15 @@ void x0_balance(bq769x0 *d, unsigned cells)
 /* The switches, then the FETs where they are not so yet. No FET without a valid picture, a known temperature
  * and a clean SYS_STAT (X0-SEQ-05), nor without its limits, which a part that was reset has lost; one that a
  * fault took back (X0-FET-13) is no longer wanted: the next scan serves the fault. f->i: those that are to be
- * on; f->x, f->y: asked for, granted. */
+ * on; f->x, f->tries: asked for, granted. */
 static int job_apply(bq769x0 *d, bq769x0_frame *f)
 {
     unsigned events = x0_events(d), fets;
     uint8_t *ctrl2 = &d->known.registers[BQ769X0_SYS_CTRL2];
     SEQ_BEGIN(f)
-    if ((d->quality & d->temp_quality & BQ_Q_VALID) == 0u) {
-        events |= BQ769X0_STAT_XREADY;
-    }
-    f->y = f->i = (uint8_t)(f->x & x0_allowed(events));
+    /* what is not valid forbids as much as DEVICE_XREADY */
+    events |= (~(unsigned)(d->quality & d->temp_quality) & BQ_Q_VALID) * BQ769X0_STAT_XREADY;
+    f->tries = f->i = (uint8_t)(f->x & x0_allowed(events));
     x0_balance(d, events == 0u ? f->word : 0u);
     SEQ_TRY(1, X0_SET_SWITCHES(d));
     if ((f->i & ~*ctrl2) != 0) {
@@ -61,10 +60,10 @@ static int job_apply(bq769x0 *d, bq769x0_frame *f)
         SEQ_TRY(3, X0_SET_CTRL2);
         *ctrl2 &= (uint8_t)(d->answer | ~BQ769X0_CTRL2_FETS);
     }
-    if ((f->y & ~*ctrl2) != 0) {
+    if ((f->tries & ~*ctrl2) != 0) {
         return BQ_E_VERIFY;
     }
-    return f->x != f->y ? BQ_E_STATE : BQ_OK;
+    return f->x != f->tries ? BQ_E_STATE : BQ_OK;
     SEQ_END;
 }
 

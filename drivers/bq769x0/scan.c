@@ -52,10 +52,10 @@ static int job_restart(bq769x0 *d, bq769x0_frame *f)
     d->watch.same = 0;
     d->known.registers[BQ769X0_SYS_CTRL2] = 0; /* never the converter off with a FET on (X0-AMB-15) */
     x0_balance(d, 0);
-    SEQ_TRY(1, x0_run(d, x0_job_off));
+    SEQ_RUN(1, x0_job_off);
     d->known.registers[BQ769X0_SYS_CTRL1] = 0;
     SEQ_TRY(2, X0_SET(BQ769X0_SYS_CTRL1, 1));
-    SEQ_TRY(3, x0_run(d, x0_job_reload));
+    SEQ_RUN(3, x0_job_reload);
     return BQ_OK;
     SEQ_END;
 }
@@ -98,7 +98,7 @@ int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
         d->data_ms = d->now_ms; /* for ever reached */
     }
     d->faults = 0;
-    SEQ_CALL(1, x0_run(d, x0_job_measure));
+    SEQ_RUN_CALL(1, x0_job_measure);
     f->x = (uint8_t)-d->result;
     if (f->x != 0u) {
         d->faults = BQ_F_COMM;
@@ -114,7 +114,7 @@ int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
             f->i = d->known.registers[BQ769X0_SYS_CTRL2] & BQ769X0_CTRL2_FETS;
             d->known.registers[BQ769X0_SYS_CTRL2] &= (uint8_t)~BQ769X0_CTRL2_FETS;
             x0_balance(d, 0);
-            SEQ_CALL(2, x0_run(d, x0_job_off));
+            SEQ_RUN_CALL(2, x0_job_off);
             if (d->result != BQ_OK) { /* still on, as far as is known: tried again with the next scan */
                 d->known.registers[BQ769X0_SYS_CTRL2] |= f->i;
             }
@@ -124,27 +124,27 @@ int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
         return -(int)f->x;
     }
     if (stopped(d)) {
-        SEQ_TRY(3, x0_run(d, x0_job_scrub)); /* after a reset it stands too, and that has its own name */
+        SEQ_RUN(3, x0_job_scrub); /* after a reset it stands too, and that has its own name */
     }
     if (stopped(d)) {
-        SEQ_TRY(4, x0_run(d, job_restart));
+        SEQ_RUN(4, job_restart);
         return BQ_OK;
     }
     if (x0_events(d) != 0u) {
-        SEQ_TRY(5, x0_run(d, x0_job_service));
+        SEQ_RUN(5, x0_job_service);
     }
     if (timer_over(d)) {
         d->asked = 0;
         x0_balance(d, 0);
         d->faults |= BQ_F_BALANCE;
-        SEQ_TRY(6, x0_run(d, x0_job_off));
+        SEQ_RUN(6, x0_job_off);
     }
     /* while the part reports a fault of its own nothing is written to it; what follows is the whole
      * configuration (X0-SEQ-35) */
     if ((d->suspect || d->now_ms - d->scrub_ms >= X0_SCRUB_MS) && (d->held & BQ769X0_STAT_XREADY) == 0u) {
-        SEQ_TRY(7, x0_run(d, x0_job_scrub));
+        SEQ_RUN(7, x0_job_scrub);
     }
-    SEQ_TRY(8, x0_run(d, x0_job_die));
+    SEQ_RUN(8, x0_job_die);
     return BQ_OK;
     SEQ_END;
 }
@@ -192,7 +192,7 @@ static int job_convert(bq769x0 *d, bq769x0_frame *f)
 int x0_job_oneshot(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    SEQ_CALL(1, x0_run(d, job_convert));
+    SEQ_RUN_CALL(1, job_convert);
     f->x = (uint8_t)-d->result;
     d->known.registers[BQ769X0_SYS_CTRL2] |= d->config.counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
     SEQ_TRY(2, X0_SET_CTRL2);

@@ -36,7 +36,7 @@ int x0_job_reload(bq769x0 *d, bq769x0_frame *f)
     x0_invalidate(d, BQ_Q_CHIP);
     x0_die_reset(d);
     d->known.registers[BQ769X0_SYS_CTRL2] = 0;
-    SEQ_TRY(1, x0_run(d, x0_job_configure));
+    SEQ_RUN(1, x0_job_configure);
     x0_configured(d);
     d->data_ms = d->now_ms + x0_first_ms(d) + X0_SCAN_MS;
     return BQ_OK;
@@ -48,13 +48,13 @@ int x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
 {
     const uint8_t *read = x0_data(d);
     SEQ_BEGIN(f)
-    SEQ_CALL(1, x0_run(d, x0_job_compare));
+    SEQ_RUN_CALL(1, x0_job_compare);
     if (d->result == BQ_E_VERIFY) {
         bool reset = read[BQ769X0_SYS_CTRL1 - FIRST] == BQ769X0_CTRL1_ADC_EN &&
                      read[BQ769X0_OV_TRIP - FIRST] == 0xacu && read[BQ769X0_UV_TRIP - FIRST] == 0x97u &&
                      read[BQ769X0_CC_CFG - FIRST] == 0u;
         d->faults |= reset ? BQ_F_RESET : BQ_F_CONFIG;
-        SEQ_TRY(2, x0_run(d, x0_job_reload));
+        SEQ_RUN(2, x0_job_reload);
         return BQ_OK;
     }
     d->scrub_ms = d->now_ms;
@@ -71,7 +71,7 @@ int x0_job_ship(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     d->known.registers[BQ769X0_SYS_CTRL2] = 0;
     x0_balance(d, 0);
-    SEQ_CALL(1, x0_run(d, x0_job_off));
+    SEQ_RUN_CALL(1, x0_job_off);
     if (d->result != BQ_OK && d->state == X0_STATE_READY) {
         return d->result;
     }

@@ -133,20 +133,20 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     f->x = t->probation && (f->i & judged(d)) != 0u;
     if ((f->i & ~d->held) != 0u || f->x != 0u) {
         take_event(d, f->i, f->x != 0u);
-        SEQ_TRY(2, x0_run(d, x0_job_off));
+        SEQ_RUN(2, x0_job_off);
     }
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
         x0_invalidate(d, BQ_Q_CHIP); /* X0-XRDY-04 */
         if (t->strikes > 2u) {
             d->faults |= BQ_F_DEFECTIVE;
-            SEQ_TRY(3, x0_run(d, x0_job_ship));
+            SEQ_RUN(3, x0_job_ship);
             return BQ_E_DEFECTIVE; /* another start boots it again */
         }
     }
     if (t->probation) {
         if (d->now_ms - t->held_ms > probation_ms(d) + EDGE_MS) {
             if (release(d)) {
-                SEQ_TRY(4, x0_run(d, x0_job_reload));
+                SEQ_RUN(4, x0_job_reload);
                 d->data_ms = d->now_ms + 2000u + X0_SCAN_MS; /* X0-AMB-66 */
             }
         }

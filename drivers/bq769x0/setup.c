@@ -25,6 +25,7 @@ static uint16_t borders(unsigned in_use)
 
 static bq_status check(const bq769x0_config *c)
 {
+    int16_t dc;
     if (c->inputs != 5u && c->inputs != 10u && c->inputs != 15u) {
         return BQ_E_RANGE;
     }
@@ -34,8 +35,7 @@ static bq_status check(const bq769x0_config *c)
     if (!in_range(c) || !die_in_range(c)) {
         return BQ_E_RANGE;
     }
-    if (c->sensors != 0u && c->thermistor != NULL &&
-        (c->thermistor->ohms == NULL || c->thermistor->count < 2u)) {
+    if (c->sensors != 0u && c->sensor != NULL && !c->sensor(c->sensor_ctx, BQ769X0_TS_CODE(10000), &dc)) {
         return BQ_E_CONFIG;
     }
     return c->uv_recover_mv < c->ov_mv && c->ov_recover_mv > c->uv_mv ? BQ_OK : BQ_E_CONFIG;

@@ -84,7 +84,7 @@ static int job_identify(bq769x0 *d, bq769x0_frame *f)
             }
             SEQ_CALL(1, ask(d, f->x));
             if (d->result == BQ_OK) {
-                SEQ_TRY(2, x0_run(d, job_probe_crc));
+                SEQ_RUN(2, job_probe_crc);
                 return BQ_OK;
             }
         }
@@ -127,18 +127,18 @@ static int job_find(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
     for (f->i = 0;; f->i++) {
-        SEQ_CALL(1, x0_run(d, job_identify));
+        SEQ_RUN_CALL(1, job_identify);
         f->x = d->result == BQ_E_NOT_FOUND;
         if (d->result == BQ_OK) {
-            SEQ_CALL(2, x0_run(d, job_past));
+            SEQ_RUN_CALL(2, job_past);
         }
         if ((d->result != BQ_E_NOT_FOUND && d->result != BQ_E_IMPLAUSIBLE) || f->i == X0_TRIES) {
             return d->result;
         }
         if (f->x == 0u) {
-            SEQ_CALL(3, x0_run(d, x0_job_ship));
+            SEQ_RUN_CALL(3, x0_job_ship);
         }
-        SEQ_CALL(4, x0_run(d, x0_job_boot));
+        SEQ_RUN_CALL(4, x0_job_boot);
     }
     SEQ_END;
 }
@@ -162,7 +162,7 @@ static int job_first(bq769x0 *d, bq769x0_frame *f)
     }
     d->temp_settled = d->watch.fresh_boot; /* temperatures come with the first scan (X0-AMB-17, X0-AMB-29) */
     for (f->tries = 0; f->tries < 5u; f->tries++) {
-        SEQ_TRY(2, x0_run(d, x0_job_picture));
+        SEQ_RUN(2, x0_job_picture);
         x0_count_picture(d);
         if (x0_valid(d) && carrying(d) == d->known.in_use) {
             return BQ_OK;
@@ -182,7 +182,7 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     SEQ_TRY(1, X0_FETCH(BQ769X0_SYS_CTRL2, 1));
     d->known.registers[BQ769X0_SYS_CTRL2] = d->config.keep_fets ? d->answer & BQ769X0_CTRL2_FETS : 0u;
-    SEQ_TRY(2, x0_run(d, x0_job_configure));
+    SEQ_RUN(2, x0_job_configure);
     x0_configured(d);
     d->state = X0_STATE_NONE; /* not before the first picture */
     SEQ_TRY(3, X0_FETCH_STAT);
@@ -192,7 +192,7 @@ static int job_take_over(bq769x0 *d, bq769x0_frame *f)
     if (d->known.registers[0] != 0u) {
         SEQ_TRY(4, X0_PUT(BQ769X0_SYS_STAT, 1));
     }
-    SEQ_TRY(5, x0_run(d, job_first));
+    SEQ_RUN(5, job_first);
     d->state = X0_STATE_READY;
     return BQ_OK;
     SEQ_END;
@@ -210,14 +210,14 @@ int x0_job_start(bq769x0 *d, bq769x0_frame *f)
     x0_balance(d, 0);
     x0_die_reset(d);
     d->data_ms = d->now_ms;
-    SEQ_TRY(1, x0_run(d, job_find));
-    SEQ_CALL(2, x0_run(d, job_take_over));
+    SEQ_RUN(1, job_find);
+    SEQ_RUN_CALL(2, job_take_over);
     if (d->result == BQ_OK) {
         return BQ_OK;
     }
     f->x = (uint8_t)-d->result;
     d->known.registers[BQ769X0_SYS_CTRL2] = 0;
-    SEQ_CALL(3, x0_run(d, x0_job_off));
+    SEQ_RUN_CALL(3, x0_job_off);
     return -(int)f->x;
     SEQ_END;
 }

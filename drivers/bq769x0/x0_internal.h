@@ -45,23 +45,27 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 /* Points of a job where it lets go of the processor. Each has a number of its own within the job; the
  * compiler refuses doubles. Point 0 is the beginning. */
 #define SEQ_BEGIN(f)                                                                                         \
-    switch ((uint8_t)(f)->next) {                                                                            \
+    switch ((f)->at) {                                                                                       \
     default:
 #define SEQ_END                                                                                              \
     }                                                                                                        \
     return BQ_E_STATE
 /* Goes on when the transfer, the child or the wait has ended; a failure is the failure of this job too. */
-#define SEQ_TRY(point, what)                                                                                 \
+#define SEQ_TRY(point, what) SEQ_GO(point, (what) | (point))
+#define SEQ_GO(point, next)                                                                                  \
     do {                                                                                                     \
-        return (what) | (point);                                                                             \
+        return next;                                                                                         \
     case (point):;                                                                                           \
     } while (0)
 /* The same, and goes on whatever came of it: d->result tells. */
 #define SEQ_CALL(point, what) SEQ_TRY(point, (what) | X0_CATCH)
+/* The same with a job as the child. */
+#define SEQ_RUN(point, child) SEQ_GO(point, x0_push(d, child, point))
+#define SEQ_RUN_CALL(point, child) SEQ_GO(point, x0_push(d, child, (point) | X0_CATCH))
 
 /* engine.c */
 bq_status x0_begin(bq769x0 *d, unsigned least_state, bq769x0_job job);
-void x0_push(bq769x0 *d, bq769x0_job job, int op);
+int x0_push(bq769x0 *d, bq769x0_job job, int op);
 void x0_pause(bq769x0 *d, uint32_t us);
 void x0_tick(bq769x0 *d);
 void x0_bump(uint32_t *counter);
@@ -120,13 +124,7 @@ static inline unsigned x0_beside(unsigned cells, unsigned apart)
     return (cells << 1 & ~apart) | (cells & ~apart) >> 1;
 }
 
-/* Children of a job: another job, and time. */
-static inline int x0_run(bq769x0 *d, bq769x0_job job)
-{
-    x0_push(d, job, 0);
-    return 0;
-}
-
+/* A child of a job that is nothing but time. */
 static inline int x0_wait(bq769x0 *d, uint32_t us)
 {
     x0_pause(d, us);

@@ -16,7 +16,6 @@
 #include "bqhost/bq769x0_known.h"
 #include "bqhost/field.h"
 #include "bqhost/hal.h"
-#include "bqhost/thermistor.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -36,12 +35,13 @@ typedef struct bq769x0_config {
     uint8_t address7; /**< 0x08, 0x18, or 0 = probe both; no part at 0x18 has CRC */
     uint8_t crc;      /**< bq769x0_crc: probe, or what the part number says */
     uint8_t sensors;  /**< thermistors in use, 0..inputs / 5; 0 = die temperature instead */
-    const bq_thermistor *thermistor; /**< table; may be NULL only with sensors = 0; at least two resistances;
-                                        must outlive the instance */
-    uint32_t shunt_uohm;             /**< 100..100000 */
-    bool invert_current;             /**< the shunt is mounted the other way round */
-    uint16_t ov_mv;                  /**< overvoltage limit of a cell */
-    uint16_t uv_mv;                  /**< undervoltage limit */
+    bq769x0_sensor sensor;   /**< their conversion, for example bq769x0_sensor_codes (bq769x0_known.h) ... */
+    const void *sensor_ctx;  /**< ... and what it is given, for example &bq769x0_codes_103at. Must know 10
+                                kOhm; may be  NULL only with sensors = 0; both must outlive the instance */
+    uint32_t shunt_uohm;     /**< 100..100000 */
+    bool invert_current;     /**< the shunt is mounted the other way round */
+    uint16_t ov_mv;          /**< overvoltage limit of a cell */
+    uint16_t uv_mv;          /**< undervoltage limit */
     uint16_t ov_recover_mv;  /**< every cell below: OV may be released; mandatory, above uv_mv, below ov_mv */
     uint16_t uv_recover_mv;  /**< every cell above: UV may be released; mandatory, above uv_mv, below ov_mv */
     uint8_t ov_delay_s;      /**< 1, 2, 4, 8; others are rounded down, 0 is refused (BQ_E_NO_CODE) */
@@ -96,8 +96,8 @@ typedef struct bq769x0_charge {
  * BQ_E_ARG (null pointer, also of an operation that is not optional: start and poll of the bus, read and
  * write of the lines, the clock); BQ_E_CELLS (count the size cannot have, or a wiring that does not hold it);
  * BQ_E_RANGE (inputs, address, shunt, sensors, recovery thresholds, die); BQ_E_NO_CODE (a current limit or
- * delay below what the chip offers); BQ_E_CONFIG (limits that contradict each other, a thermistor table of
- * less than two points). Voltage limits depend on the device's trim and are refused by bring-up.
+ * delay below what the chip offers); BQ_E_CONFIG (limits that contradict each other, a sensor whose table
+ * does not know 10 kOhm). Voltage limits depend on the device's trim and are refused by bring-up.
  */
 bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i2c, const bq_gpio *gpio,
                        const bq_clock *clock);

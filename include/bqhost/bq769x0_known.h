@@ -46,6 +46,9 @@ typedef struct bq769x0_code_table {
 /** `table` is a bq769x0_code_table: linear between two points, rounded to the nearest. One search from the
  * cold end, one division. */
 bool bq769x0_sensor_codes(const void *table, uint16_t code, int16_t *dc);
+/** 10 kOhm at 25 C, beta 3435 (103AT type), -40..125 C; at most 0.1 degree off the beta curve, rounding
+ * included. Made by tools/thermistor.py --codes, as a table for any other sensor. */
+extern const bq769x0_code_table bq769x0_codes_103at;
 /** `thermistor` is a bq_thermistor (thermistor.h), which serves other monitors too: by way of the resistance.
  */
 bool bq769x0_sensor_thermistor(const void *thermistor, uint16_t code, int16_t *dc);

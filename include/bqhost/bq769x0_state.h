@@ -18,10 +18,11 @@ typedef int (*bq769x0_job)(struct bq769x0 *d, struct bq769x0_frame *f);
 
 typedef struct bq769x0_frame {
     bq769x0_job job;
-    int next;      /* what the job returned last; 0 = its beginning */
-    int op;        /* of a transfer: what is transferred */
-    uint32_t word; /* its variables */
-    uint8_t tries, i, x, y;
+    int next;            /* what it returned last */
+    int op;              /* of a transfer: what travels next */
+    uint32_t word;       /* its variables: this ... */
+    uint8_t tries, i, x; /* ... and these */
+    uint8_t at;          /* where it goes on; 0 = its beginning */
 } bq769x0_frame;
 
 /* What is far from the beginning of the instance is reached through a pointer of its own. */
@@ -94,30 +95,28 @@ typedef struct bq769x0 {
     uint32_t picture_ms;
     bq_i2c i2c;
     bq_clock clock;
-    /* from here on more than 128 bytes away */
-    bq_i2c_segment segments[2];
-    bq_link_stats stats;
-    uint8_t
-        bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
-    uint16_t code[18];       /* of the last good picture: cells from the lowest on, [15] TS1.. */
-    uint16_t fresh[20];      /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
-    bq769x0_frame frames[BQ769X0_FRAMES + 1u];
-    /* beyond the base set */
-    uint16_t faults;    /* BQ_F_... of the picture */
-    bool measured;      /* there was a picture */
-    uint16_t gain2_q15; /* GAIN2 in units of 1/32768 */
-    uint32_t sequence;
-    uint16_t asked;   /* cells the caller wants bled */
+    /* beyond the base set, and beyond 128 bytes */
     uint32_t data_ms; /* from when on the measurement registers count */
-    uint32_t served_ms;
-    uint32_t scrub_ms;
-    bq769x0_config config;
-    bq769x0_achieved achieved;
-    bq_gpio gpio;
+    uint32_t scrub_ms, served_ms, sequence;
+    uint16_t faults;    /* BQ_F_... of the picture */
+    uint16_t asked;     /* cells the caller wants bled */
+    uint16_t gain2_q15; /* GAIN2 in units of 1/32768 */
+    bool measured;      /* there was a picture */
     bq769x0_trouble trouble;
     bq769x0_watch watch;
     bq769x0_die die;
+    bq_link_stats stats;
+    uint8_t
+        bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
+    /* beyond 256 bytes */
+    bq_i2c_segment segments[2];
+    uint16_t code[18];  /* of the last good picture: cells from the lowest on, [15] TS1.. */
+    uint16_t fresh[20]; /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
+    bq769x0_frame frames[BQ769X0_FRAMES + 1u];
+    bq769x0_config config;
+    bq_gpio gpio;
     bq769x0_counting counting;
+    bq769x0_achieved achieved;
     uint16_t calibrated_mv[BQ769X0_INPUTS]; /* cells at the last calibration */
 } bq769x0;
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * bench bus            bytes and packets of one scan for several stack sizes; fails unless they are 23 N + 4 in N + 1
- * bench afe            the same for one update of the bq769x0 parts; the largest must need 92 bytes (50 without CRC) in 3
- * bench scan N COUNT   bring-up of N devices, then COUNT times scan and copy the sample: the work of which instructions are counted
+ * bench bus            bytes and packets of one scan for several stack sizes; fails unless they are 23 N + 4
+ * in N + 1 bench afe            the same for one update of the bq769x0 parts; the largest must need 92 bytes
+ * (50 without CRC) in 3 bench scan N COUNT   bring-up of N devices, then COUNT times scan and copy the
+ * sample: the work of which instructions are counted
  */
 #include "bench_afe.h"
 #include "bqhost/bq76pl536.h"
@@ -111,8 +112,8 @@ static int bus(void)
         packets = rig.hal.transfers - packets;
         bytes = rig.hal.bytes - bytes;
         double us = (double)bytes * 8e6 / rig.hal.clock_hz + 3.0 * (double)packets;
-        printf("| %u | %u | %" PRIu64 " | %" PRIu64 " | %u | %.1f ms at %.4g kHz |\n", n, 6u * n, packets, bytes,
-               23u * n + 4u, us / 1000.0, rig.hal.clock_hz / 1000.0);
+        printf("| %u | %u | %" PRIu64 " | %" PRIu64 " | %u | %.1f ms at %.4g kHz |\n", n, 6u * n, packets,
+               bytes, 23u * n + 4u, us / 1000.0, rig.hal.clock_hz / 1000.0);
         if (packets != n + 1u || bytes != 23u * n + 4u) {
             fprintf(stderr, "bench: more on the bus than a scan needs\n");
             return 1;

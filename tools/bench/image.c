@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The smallest firmware there is, to see what a linker keeps: the board is one register that answers everything.
- * Without WHOLE the driver alone is brought up and scans; with WHOLE the super-loop with pack controller runs on it.
- * Only linked, never run.
+ * The smallest firmware there is, to see what a linker keeps: the board is one register that answers
+ * everything. Without WHOLE the driver alone is brought up and scans; with WHOLE the super-loop with pack
+ * controller runs on it. Only linked, never run.
  */
 #include "bqhost/app.h"
 #include "bqhost/bq76pl536.h"
@@ -61,10 +61,8 @@ static bq_cell_reading cells[6u * DEVICES];
 static bq_temp_reading temps[2u * DEVICES];
 static bq_module_reading modules[DEVICES];
 
-static const bq76pl536_config config = {.devices = DEVICES,
-                                        .cells_per_device = 6,
-                                        .sensors = 2,
-                                        .thermistor = &bq_thermistor_103at};
+static const bq76pl536_config config = {
+    .devices = DEVICES, .cells_per_device = 6, .sensors = 2, .thermistor = &bq_thermistor_103at};
 
 #ifdef WHOLE
 static bq_app app;
@@ -84,7 +82,8 @@ int main(void)
     }
 }
 #else
-static bq_sample sample = {cells, temps, modules, 6u * DEVICES, 2u * DEVICES, DEVICES, 0, 0, 0, 0, 0, 0, 0, false};
+static bq_sample sample = {cells, temps, modules, 6u * DEVICES, 2u * DEVICES, DEVICES, 0, 0, 0, 0,
+                           0,     0,     0,       false};
 
 int main(void)
 {

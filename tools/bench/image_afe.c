@@ -35,12 +35,15 @@ static const bq_i2c_ops i2c_ops = {i2c_start, i2c_poll, NULL};
 static const bq_i2c i2c = {&i2c_ops, NULL};
 static const bq_clock tick = {now_us, NULL};
 
+/* The sensor of this board, 0.7 degrees exact from -20 to 80: data of the user, not of the library. */
+#define CODE(ohms) BQ769X0_TS_CODE(ohms)
+static const uint16_t codes[] = {CODE(67889), CODE(41978), CODE(26870), CODE(17753), CODE(12074), CODE(8434),
+                                 CODE(6034),  CODE(4408),  CODE(3283),  CODE(2487),  CODE(1915)};
+static const bq769x0_code_table table = {codes, 11, -200, 100};
+
 static bq769x0 driver;
 
 #ifdef WHOLE
-/* The sensor of this board, 0.7 degrees exact from -20 to 80: data of the user, not of the library. */
-static const uint32_t ohms[] = {67889, 41978, 26870, 17753, 12074, 8434, 6034, 4408, 3283, 2487, 1915};
-static const bq_thermistor sensor = {ohms, 11, -200, 100};
 static bq_cell_reading cells[15];
 static bq_temp_reading temps[3];
 static bq_module_reading modules[1];
@@ -53,7 +56,8 @@ static const bq769x0_config config = {.inputs = 15,
                                       .address7 = 0x08,
                                       .crc = BQ769X0_CRC_ON,
                                       .sensors = 3,
-                                      .thermistor = &sensor,
+                                      .sensor = bq769x0_sensor_codes,
+                                      .sensor_ctx = &table,
                                       .shunt_uohm = 1000,
                                       .ov_mv = 4250,
                                       .uv_mv = 2800,
@@ -66,11 +70,6 @@ static const bq769x0_config config = {.inputs = 15,
                                       .ocd_delay_ms = 320,
                                       .scd_delay_us = 100};
 #else
-/* The same sensor in codes. */
-#define CODE(ohms) BQ769X0_TS_CODE(ohms)
-static const uint16_t codes[] = {CODE(67889), CODE(41978), CODE(26870), CODE(17753), CODE(12074), CODE(8434),
-                                 CODE(6034),  CODE(4408),  CODE(3283),  CODE(2487),  CODE(1915)};
-static const bq769x0_code_table table = {codes, 11, -200, 100};
 static const bq769x0_known known = {BQ769X0_PART(15, 0x7fffu),
                                     .address7 = 0x08,
                                     .crc = true,

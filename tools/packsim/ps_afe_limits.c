@@ -22,7 +22,8 @@ void ps_afe_default(ps_scenario *s, bool lfp)
     d->inputs = s->part->cells;
     d->cells = (uint8_t)s->cells;
     d->sensors = (uint8_t)s->sensors;
-    d->thermistor = &bq_thermistor_103at;
+    d->sensor = bq769x0_sensor_codes;
+    d->sensor_ctx = &bq769x0_codes_103at;
     d->shunt_uohm = (uint32_t)lround(s->shunt_ohm * 1e6);
     d->ov_mv = lfp ? 3750 : 4300;
     d->uv_mv = lfp ? 2300 : 2500;

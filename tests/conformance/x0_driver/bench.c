@@ -247,7 +247,8 @@ void bench_part(const char *name, const sim_x0_options *options)
         (void)sim_x0_set_cell(&b.chip, i, 3.6);
     b.cfg.inputs = b.cfg.cells = part->cells;
     b.cfg.sensors = part->cells / 5;
-    b.cfg.thermistor = &bq_thermistor_103at;
+    b.cfg.sensor = bq769x0_sensor_thermistor;
+    b.cfg.sensor_ctx = &bq_thermistor_103at;
     b.cfg.shunt_uohm = 5000;
     b.cfg.ov_mv = 4200;
     b.cfg.uv_mv = 2800;

@@ -8,6 +8,7 @@
 #define BENCH_H
 
 #include "bqhost/bq769x0.h"
+#include "bqhost/thermistor.h"
 #include "bqhost/bq769x0_regs.h"
 #include "sim_x0.h"
 #include "unity.h"

@@ -154,7 +154,7 @@ static void test_init_refuses_what_it_could_not_call_or_look_up(void)
     i2c = bench_i2c();
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq769x0_init(&b.d, &b.cfg, &i2c, &gpio, &clock));
     TEST_ASSERT_EQUAL(BQ_OK, bq769x0_init(&b.d, &b.cfg, &i2c, NULL, &clock));
-    b.cfg.thermistor = &t;
+    b.cfg.sensor_ctx = &t;
     TEST_ASSERT_EQUAL(BQ_E_CONFIG, bq769x0_init(&b.d, &b.cfg, &i2c, NULL, &clock));
     t.count = 2;
     TEST_ASSERT_EQUAL(BQ_OK, bq769x0_init(&b.d, &b.cfg, &i2c, NULL, &clock));

@@ -41,7 +41,7 @@ static void with_straight_sensors(const char *name)
 {
     unsigned i;
     bench_part(name, NULL);
-    b.cfg.thermistor = &straight;
+    b.cfg.sensor_ctx = &straight;
     TEST_ASSERT_EQUAL(BQ_OK, bench_init());
     TEST_ASSERT_EQUAL(BQ_OK, bench_start());
     bench_serve(2750, 250);

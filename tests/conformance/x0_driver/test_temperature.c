@@ -88,7 +88,7 @@ static void test_die_temperature(void)
     for (k = 0; k < 15; k++) {
         bench_part(sim_x0_part_at(k)->name, NULL);
         b.cfg.sensors = 0;
-        b.cfg.thermistor = NULL;
+        b.cfg.sensor = NULL;
         TEST_ASSERT_EQUAL(BQ_OK, bench_init());
         TEST_ASSERT_EQUAL(BQ_OK, bench_start());
         for (celsius = -40; celsius <= 140; celsius += 15) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Thermistor and die readings scaled with the GAIN of the cells instead of 382 uV. */
+#include "bqhost/thermistor.h"
 #include "x0_wrong.h"
 
 const x0_wrong wrong = {0};
@@ -18,7 +19,7 @@ bq_status __wrap_bq769x0_sample(bq769x0 *d, bq_sample *s)
         if (x0_wrong_config()->sensors == 0) {
             s->temps[i].dc = bq769x0_die_dc((uint16_t)code, 1200000u);
         } else if (bq769x0_ts_ohms((uint16_t)code, &ohms) == BQ_OK) {
-            (void)bq_thermistor_dc(x0_wrong_config()->thermistor, ohms, &s->temps[i].dc);
+            (void)bq_thermistor_dc(x0_wrong_config()->sensor_ctx, ohms, &s->temps[i].dc);
         }
         mutant_acted();
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Regenerates the committed thermistor table and compares, and proves that the generator refuses a table that is too coarse.
+# Regenerates the committed thermistor tables and compares, and proves that the generator refuses a table that is too coarse.
 find_program(python NAMES python3)
 if(NOT python)
     message(STATUS "SKIPPED: python3 is needed to run the generator")
@@ -13,6 +13,14 @@ function(generate step result output)
     set(${result} "${status}" PARENT_SCOPE)
     set(${output} "${text}" PARENT_SCOPE)
 endfunction()
+
+execute_process(
+    COMMAND ${python} ${SOURCE}/tools/thermistor.py --codes --step 2.5 --r25 10000 --beta 3435 --name bq769x0_codes_103at
+    RESULT_VARIABLE status OUTPUT_VARIABLE generated)
+file(READ ${SOURCE}/src/core/bq769x0_codes_103at.c committed)
+if(NOT status EQUAL 0 OR NOT generated STREQUAL committed)
+    message(FATAL_ERROR "src/core/bq769x0_codes_103at.c is not what tools/thermistor.py prints")
+endif()
 
 file(READ ${SOURCE}/src/core/thermistor_103at.c committed)
 generate(1.5 status generated)

@@ -5,6 +5,7 @@
 #include "bqhost/bq769x0_known.h"
 #include "bqhost/thermistor.h"
 #include "unity.h"
+#include <math.h>
 
 void setUp(void)
 {
@@ -145,6 +146,18 @@ static void test_temperatures_by_codes(void)
     }
 }
 
+/* The table that comes with it, against the curve. */
+static void test_the_usual_sensor_by_codes(void)
+{
+    for (unsigned code = 454; code < 8304u; code++) {
+        double volts = code * 382e-6, ohms = 10000.0 * volts / (3.3 - volts);
+        double celsius = 1.0 / (1.0 / 298.15 + log(ohms / 10000.0) / 3435.0) - 273.15;
+        int16_t dc;
+        TEST_ASSERT_TRUE(bq769x0_sensor_codes(&bq769x0_codes_103at, (uint16_t)code, &dc));
+        TEST_ASSERT_TRUE(fabs(dc / 10.0 - celsius) < 0.1);
+    }
+}
+
 /* proves: X0-DIE-02 */
 static void test_the_die(void)
 {
@@ -165,6 +178,7 @@ int main(void)
     RUN_TEST(test_one_part_as_a_constant);
     RUN_TEST(test_codes_of_resistances);
     RUN_TEST(test_temperatures_by_codes);
+    RUN_TEST(test_the_usual_sensor_by_codes);
     RUN_TEST(test_the_die);
     return UNITY_END();
 }

@@ -189,7 +189,7 @@ static void test_what_init_refuses(void)
     rig.config.sensors = 3;
     TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
     rig.config = good;
-    rig.config.thermistor = NULL;
+    rig.config.sensor = NULL;
     TEST_ASSERT_EQUAL_INT(BQ_E_RANGE, init_known());
     rig.config = good;
     rig.config.ocd_delay_ms = 7;

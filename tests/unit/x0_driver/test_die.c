@@ -117,7 +117,7 @@ static void test_the_die_as_only_source(void)
 {
     rig_part("bq7693003", 10);
     rig.config.sensors = 0;
-    rig.config.thermistor = NULL;
+    rig.config.sensor = NULL;
     rig.config.die_limit_dc = 600;
     rig.config.die_v25_uv = 1221000; /* this one reads 5 degrees low by the book */
     TEST_ASSERT_EQUAL_INT(BQ_OK, rig_init());

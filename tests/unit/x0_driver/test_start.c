@@ -229,6 +229,12 @@ static void test_ship_that_does_not_happen_is_reported(void)
 }
 
 /* proves: X0-NUM-528, X0-NUM-544, X0-CELL-18, X0-ELEC-13 */
+static bool knows_nothing(const void *ctx, uint16_t code, int16_t *dc)
+{
+    (void)ctx, (void)code, (void)dc;
+    return false;
+}
+
 static void test_configurations_that_are_refused(void)
 {
     bq769x0_config good;
@@ -250,7 +256,8 @@ static void test_configurations_that_are_refused(void)
     REFUSED(BQ_E_RANGE, rig.config.uv_recover_mv = 2800);
     REFUSED(BQ_E_CONFIG, rig.config.uv_recover_mv = 4300);
     REFUSED(BQ_E_RANGE, rig.config.sensors = 2);
-    REFUSED(BQ_E_RANGE, rig.config.thermistor = NULL);
+    REFUSED(BQ_E_RANGE, rig.config.sensor = NULL);
+    REFUSED(BQ_E_CONFIG, rig.config.sensor = knows_nothing);
     REFUSED(BQ_E_RANGE, rig.config.shunt_uohm = 99);
     REFUSED(BQ_E_RANGE, rig.config.address7 = 0x09);
     REFUSED(BQ_E_NO_CODE, rig.config.ocd_ma = 1000);
