@@ -4,12 +4,12 @@
 
 static bq_status x0_afe_start(void *ctx)
 {
-    return bq769x0_begin_start(ctx);
+    return x0_begin(ctx, X0_STATE_NONE, x0_job_start);
 }
 
 static bq_status x0_afe_scan(void *ctx)
 {
-    return bq769x0_begin_scan(ctx);
+    return x0_begin(ctx, X0_STATE_READY, x0_job_scan);
 }
 
 static bq_status x0_afe_poll(void *ctx, uint32_t *wait_us)
@@ -29,12 +29,12 @@ static bq_status x0_afe_apply(void *ctx, const bq_action *action)
 
 static bq_status x0_afe_self_test(void *ctx)
 {
-    return bq769x0_begin_self_test(ctx);
+    return x0_begin(ctx, X0_STATE_READY, x0_job_compare);
 }
 
 static bq_status x0_afe_ship(void *ctx)
 {
-    return bq769x0_begin_ship(ctx);
+    return x0_begin(ctx, X0_STATE_READY, x0_job_ship);
 }
 
 static uint8_t x0_afe_modules_found(void *ctx)

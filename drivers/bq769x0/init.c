@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From physical units to what the base set is told: wiring, limits and delays in codes. */
 #include "x0_internal.h"
+#include <string.h>
 
 unsigned x0_bits(unsigned mask)
 {
@@ -24,55 +25,55 @@ static bool in_range(const bq769x0_config *c, unsigned groups)
            c->shunt_uohm - 100u <= 100000u - 100u;
 }
 
-static bq_status limits(const bq769x0_config *c, uint8_t *registers, bq769x0_current_limits *current)
-{
-    bq_status st = bq769x0_protect3(c->ov_delay_s, c->uv_delay_s, &registers[BQ769X0_PROTECT3]);
-    if (st == BQ_OK) {
-        st = bq769x0_current_codes(bq769x0_shunt_uv(c->ocd_ma, c->shunt_uohm), c->ocd_delay_ms,
-                                   bq769x0_shunt_uv(c->scd_ma, c->shunt_uohm), c->scd_delay_us, current);
-        registers[BQ769X0_PROTECT1] = current->protect1;
-        registers[BQ769X0_PROTECT2] = current->protect2;
-    }
-    return st;
-}
-
-bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *known,
+bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *k,
                       bq769x0_current_limits *current)
 {
-    bq769x0_known k = {0};
+    unsigned groups = c->inputs / 5u;
+    uint8_t protect3;
     bq_status st;
-    k.groups = (uint8_t)(c->inputs / 5u);
     if (!wired(c, in_use)) {
         return BQ_E_CELLS;
     }
-    if (!in_range(c, k.groups)) {
+    if (!in_range(c, groups)) {
         return BQ_E_RANGE;
     }
-    st = limits(c, k.registers, current);
+    st = bq769x0_protect3(c->ov_delay_s, c->uv_delay_s, &protect3);
+    if (st == BQ_OK) {
+        st = bq769x0_current_codes(bq769x0_shunt_uv(c->ocd_ma, c->shunt_uohm), c->ocd_delay_ms,
+                                   bq769x0_shunt_uv(c->scd_ma, c->shunt_uohm), c->scd_delay_us, current);
+    }
     if (st != BQ_OK) {
         return st;
     }
-    k.registers[BQ769X0_SYS_CTRL1] = BQ769X0_CTRL1_ADC_EN;
-    k.sensor = bq769x0_sensor_die;
-    k.sensor_ctx = &c->die_v25_uv;
+    memset(k, 0, sizeof *k);
+    k->registers[BQ769X0_PROTECT1] = current->protect1;
+    k->registers[BQ769X0_PROTECT2] = current->protect2;
+    k->registers[BQ769X0_PROTECT3] = protect3;
+    k->registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
+    k->registers[BQ769X0_SYS_CTRL1] = BQ769X0_DIE;
+    k->sensor = bq769x0_sensor_die;
+    k->sensor_ctx = &c->die_v25_uv;
     if (c->sensors != 0u) {
-        k.registers[BQ769X0_SYS_CTRL1] = BQ769X0_CTRL1_ADC_EN | BQ769X0_CTRL1_TEMP_SEL;
-        k.sensor = c->sensor;
-        k.sensor_ctx = c->sensor_ctx;
+        k->registers[BQ769X0_SYS_CTRL1] = BQ769X0_THERMISTORS;
+        k->sensor = c->sensor;
+        k->sensor_ctx = c->sensor_ctx;
     }
-    k.registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
-    k.address7 = c->address7;
-    k.crc = c->crc == BQ769X0_CRC_ON;
-    k.first = k.groups == 3u ? 0u : 15u;
-    k.codes = k.groups == 3u ? 20u : c->inputs;
-    k.cells = c->cells;
-    k.invert_current = c->invert_current;
-    k.counter = c->counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
-    k.in_use = (uint16_t)in_use;
-    k.ov_mv = c->ov_mv;
-    k.uv_mv = c->uv_mv;
-    k.shunt_uohm = c->shunt_uohm;
-    *known = k;
+    k->address7 = c->address7;
+    k->crc = c->crc == BQ769X0_CRC_ON;
+    k->groups = (uint8_t)groups;
+    k->first = 15;
+    k->codes = c->inputs;
+    if (groups == 3u) {
+        k->first = 0;
+        k->codes = 20;
+    }
+    k->cells = c->cells;
+    k->invert_current = c->invert_current;
+    k->counter = c->counter_off ? 0u : BQ769X0_CTRL2_CC_EN;
+    k->in_use = (uint16_t)in_use;
+    k->ov_mv = c->ov_mv;
+    k->uv_mv = c->uv_mv;
+    k->shunt_uohm = c->shunt_uohm;
     return BQ_OK;
 }
 

@@ -43,16 +43,20 @@ int x0_job_reload(bq769x0 *d, bq769x0_frame *f)
     SEQ_END;
 }
 
+/* Whether limits and counter as read, from SYS_CTRL1 on, are those of a part that was just reset. */
+bool x0_like_new(const uint8_t *ctrl1)
+{
+    return ctrl1[5] == 0xacu && ctrl1[6] == 0x97u && ctrl1[7] == 0u;
+}
+
 /* Once a second: what differs is written again, FETs off first (X0-SEQ-20). */
 int x0_job_scrub(bq769x0 *d, bq769x0_frame *f)
 {
-    const uint8_t *read = x0_data(d);
+    const uint8_t *read = x0_data(d) + (BQ769X0_SYS_CTRL1 - FIRST);
     SEQ_BEGIN(f)
     SEQ_RUN_CALL(1, x0_job_compare);
     if (d->result == BQ_E_VERIFY) {
-        bool reset = read[BQ769X0_SYS_CTRL1 - FIRST] == BQ769X0_CTRL1_ADC_EN &&
-                     read[BQ769X0_OV_TRIP - FIRST] == 0xacu && read[BQ769X0_UV_TRIP - FIRST] == 0x97u &&
-                     read[BQ769X0_CC_CFG - FIRST] == 0u;
+        bool reset = *read == BQ769X0_CTRL1_ADC_EN && x0_like_new(read);
         d->faults |= reset ? BQ_F_RESET : BQ_F_CONFIG;
         SEQ_RUN(2, x0_job_reload);
         return BQ_OK;
@@ -75,7 +79,7 @@ int x0_job_ship(bq769x0 *d, bq769x0_frame *f)
     if (d->result != BQ_OK && d->state == X0_STATE_READY) {
         return d->result;
     }
-    x0_drive(d, BQ_LINE_AFE_BOOT, false);
+    x0_drive(d, false);
     for (f->tries = 0; f->tries < X0_TRIES; f->tries++) {
         for (f->i = 0; f->i < 3u; f->i++) {
             *ctrl1 = (uint8_t)((*ctrl1 & ~3u) | f->i);

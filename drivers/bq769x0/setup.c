@@ -12,9 +12,9 @@ static bool in_range(const bq769x0_config *c)
 
 static bool die_in_range(const bq769x0_config *c)
 {
-    bool v25 = c->die_v25_uv == 0u || (c->die_v25_uv >= 1100000u && c->die_v25_uv <= 1300000u);
-    return v25 && c->die_limit_dc >= 0 && c->die_limit_dc <= 950 && c->die_fault_dc >= 0 &&
-           c->die_fault_dc <= 1000 && (c->die_check_s == 0u || c->die_check_s >= 5u);
+    bool v25 = c->die_v25_uv == 0u || c->die_v25_uv - 1100000u <= 200000u;
+    return v25 && (uint16_t)c->die_limit_dc <= 950u && (uint16_t)c->die_fault_dc <= 1000u &&
+           (c->die_check_s == 0u || c->die_check_s >= 5u);
 }
 
 /* Lowest cells of the upper groups: below them lies a border between groups. */
@@ -28,9 +28,6 @@ static bq_status check(const bq769x0_config *c)
     int16_t dc;
     if (c->inputs != 5u && c->inputs != 10u && c->inputs != 15u) {
         return BQ_E_RANGE;
-    }
-    if (bq769x0_wiring(c->inputs, c->cells) == 0u) {
-        return BQ_E_CELLS;
     }
     if (!in_range(c) || !die_in_range(c)) {
         return BQ_E_RANGE;

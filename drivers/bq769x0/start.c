@@ -3,10 +3,11 @@
 #include "bqhost/crc8.h"
 #include "x0_internal.h"
 
-void x0_drive(const bq769x0 *d, bq_line line, bool level)
+void x0_drive(const bq769x0 *d, bool level)
 {
     if (d->gpio.ops != NULL) {
-        (void)d->gpio.ops->write(d->gpio.ctx, line, level); /* a board without it boots the part itself */
+        (void)d->gpio.ops->write(d->gpio.ctx, BQ_LINE_AFE_BOOT,
+                                 level); /* a board without it boots the part itself */
     }
 }
 
@@ -21,79 +22,73 @@ uint32_t x0_first_ms(const bq769x0 *d)
 int x0_job_boot(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    x0_drive(d, BQ_LINE_AFE_BOOT, false);
+    x0_drive(d, false);
     SEQ_TRY(1, x0_wait(d, 1000u));
-    x0_drive(d, BQ_LINE_AFE_BOOT, true);
+    x0_drive(d, true);
     d->data_ms = d->now_ms + 11u + x0_first_ms(d); /* the clock drops fractions */
     d->watch.fresh_boot = true;
     SEQ_TRY(2, x0_wait(d, 2500u));
-    x0_drive(d, BQ_LINE_AFE_BOOT, false);
+    x0_drive(d, false);
     SEQ_TRY(3, x0_wait(d, 12000u));
     return BQ_OK;
     SEQ_END;
 }
 
 /* Four bytes as they are; a CRC part sends data, crc, data, crc. */
-static bool looks_like_crc(bq769x0 *d, uint8_t first)
+static unsigned looks_like_crc(const bq769x0 *d)
 {
-    uint8_t head[2] = {(uint8_t)(d->known.address7 * 2u + 1u), first};
-    return bq_crc8(0, head, 2) == x0_data(d)[1] && bq_crc8(0, &x0_data(d)[2], 1) == x0_data(d)[3];
+    const uint8_t *bus = d->bus;
+    return bq_crc8(bq_crc8(0, bus, 1), bus + 2, 1) == bus[3] && bq_crc8(0, bus + 4, 1) == bus[5];
 }
 
 /* X0-SEQ-08 by reading; if the two reads disagree X0-SEQ-09 by writing CC_CFG, twice, so that content left
  * over from before cannot answer. Written without CRC: a part with CRC stores nothing then. */
 static int job_probe_crc(bq769x0 *d, bq769x0_frame *f)
 {
+    uint8_t *cc_cfg = &d->known.registers[BQ769X0_CC_CFG];
     SEQ_BEGIN(f)
     SEQ_TRY(1, X0_FETCH(BQ769X0_OV_TRIP, 4));
-    f->x = looks_like_crc(d, d->answer) ? 1u : 0u;
+    f->x = (uint8_t)looks_like_crc(d);
     SEQ_TRY(2, X0_FETCH(BQ769X0_ADCGAIN1, 4));
-    if (f->x != (looks_like_crc(d, d->answer) ? 1u : 0u)) {
-        d->known.registers[BQ769X0_CC_CFG] = 0x00;
+    if (f->x != looks_like_crc(d)) {
+        *cc_cfg = 0x00;
         SEQ_CALL(3, X0_SET(BQ769X0_CC_CFG, 1));
         f->x = d->result != BQ_OK;
-        d->known.registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
+        *cc_cfg = BQ769X0_CC_CFG_VALUE;
         SEQ_CALL(4, X0_SET(BQ769X0_CC_CFG, 1));
         f->x |= (uint8_t)(d->result != BQ_OK);
     }
     d->known.crc = f->x != 0u;
-    if ((d->config.crc == BQ769X0_CRC_ON && !d->known.crc) ||
-        (d->config.crc == BQ769X0_CRC_OFF && d->known.crc)) {
-        return BQ_E_CONFIG; /* X0-SEQ-10 */
-    }
-    return BQ_OK;
+    return d->config.crc == BQ769X0_CRC_PROBE || d->config.crc == BQ769X0_CRC_OFF + f->x
+               ? BQ_OK
+               : BQ_E_CONFIG; /* X0-SEQ-10 */
     SEQ_END;
 }
 
 /* Asks at 0x08 or 0x18 with a plain read that disturbs nothing (X0-SEQ-07). */
-static int ask(bq769x0 *d, uint8_t address7)
-{
-    d->known.address7 = address7;
-    d->known.crc = false;
-    return X0_FETCH_STAT | X0_ONCE;
-}
-
 static int job_identify(bq769x0 *d, bq769x0_frame *f)
 {
     SEQ_BEGIN(f)
-    for (f->tries = 0; f->tries < (d->watch.fresh_boot ? 10u : X0_TRIES); f->tries++) {
-        for (f->i = 0; f->i < 2u; f->i++) {
-            f->x = f->i == 0u ? 0x08u : 0x18u;
-            if (d->config.address7 != 0u && d->config.address7 != f->x) {
-                continue;
-            }
-            SEQ_CALL(1, ask(d, f->x));
-            if (d->result == BQ_OK) {
-                SEQ_RUN(2, job_probe_crc);
-                return BQ_OK;
+    for (;;) {
+        for (f->i = 0x08; f->i <= 0x18u; f->i += 0x10u) {
+            if (d->config.address7 == 0u || d->config.address7 == f->i) {
+                d->known.address7 = f->i;
+                d->known.crc = false;
+                SEQ_CALL(1, X0_FETCH_STAT | X0_ONCE);
+                if (d->result == BQ_OK) {
+                    SEQ_RUN(2, job_probe_crc);
+                    return BQ_OK;
+                }
             }
         }
         if (d->result != BQ_E_NACK || f->tries == 1u) {
             x0_recover(d);
         }
         SEQ_TRY(3, x0_wait(d, d->watch.fresh_boot ? 5000u : 1000u)); /* 50 ms after a boot (X0-SEQ-03) */
+        if (++f->tries == (d->watch.fresh_boot ? 10u : X0_TRIES)) {
+            return BQ_E_NOT_FOUND;
+        }
     }
-    return BQ_E_NOT_FOUND;
     SEQ_END;
 }
 
@@ -101,19 +96,18 @@ static int job_identify(bq769x0 *d, bq769x0_frame *f)
  * be a moment old, when nothing may be written yet and nothing is measured (X0-SEQ-02, X0-ADC-14). */
 static int job_past(bq769x0 *d, bq769x0_frame *f)
 {
+    const uint8_t *read = x0_data(d);
+    unsigned any = 0, all = 0xff;
     SEQ_BEGIN(f)
     SEQ_TRY(1, X0_FETCH(BQ769X0_SYS_CTRL1, 8));
-    f->x = 0;
-    f->i = 0xff;
     for (unsigned i = 0; i < 8u; i++) {
-        f->x |= x0_data(d)[i];
-        f->i &= x0_data(d)[i];
+        any |= read[i];
+        all &= read[i];
     }
-    if (f->x == 0u || f->i == 0xffu) {
+    if (any == 0u || all == 0xffu) {
         return BQ_E_IMPLAUSIBLE;
     }
-    f->x = x0_data(d)[5] == 0xacu && x0_data(d)[6] == 0x97u && x0_data(d)[7] == 0u;
-    if (!d->watch.fresh_boot && (f->x != 0u || (d->answer & BQ769X0_CTRL1_ADC_EN) == 0u)) {
+    if (!d->watch.fresh_boot && (x0_like_new(read) || (read[0] & BQ769X0_CTRL1_ADC_EN) == 0u)) {
         d->data_ms = d->now_ms + 12u + x0_first_ms(d) + X0_SCAN_MS;
         SEQ_TRY(2, x0_wait(d, 12000u));
     }

@@ -3,6 +3,7 @@
  * written (X0-SEQ-11, X0-SEQ-16, X0-SEQ-48..53). */
 #include "bqhost/crc8.h"
 #include "x0_internal.h"
+#include <string.h>
 
 #define BYTE_US 90u /* eight bits and the acknowledgement at 100 kHz */
 
@@ -16,16 +17,20 @@ static bool walk(bq769x0 *d, bool reading, unsigned n)
     if (!reading) {
         from = &d->known.registers[d->bus[1]];
     }
+    if (!d->known.crc) {
+        if (!reading) {
+            memcpy(to, from, n);
+        }
+        return true;
+    }
     crc = bq_crc8(0, d->bus, 2u - reading);
     do {
         *to = *from++;
         crc = bq_crc8(crc, to++, 1);
-        if (d->known.crc) {
-            if (!reading) {
-                *to++ = crc;
-            } else if (*from++ != crc) {
-                return false;
-            }
+        if (!reading) {
+            *to++ = crc;
+        } else if (*from++ != crc) {
+            return false;
         }
         crc = 0;
     } while (--n != 0u);

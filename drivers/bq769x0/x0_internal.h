@@ -94,10 +94,11 @@ bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *k
                       bq769x0_current_limits *current);
 bq769x0_trim x0_trim(const bq769x0 *d);
 unsigned x0_bits(unsigned mask);
+bool x0_like_new(const uint8_t *ctrl1);
 void x0_rescale(bq769x0 *d);
 void x0_configured(bq769x0 *d);
 void x0_count_picture(bq769x0 *d);
-void x0_drive(const bq769x0 *d, bq_line line, bool level);
+void x0_drive(const bq769x0 *d, bool level);
 uint32_t x0_first_ms(const bq769x0 *d);
 void x0_count_charge(bq769x0 *d);
 void x0_look_for_charge(bq769x0 *d);

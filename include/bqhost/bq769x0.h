@@ -120,8 +120,8 @@ unsigned bq769x0_config_warnings(const bq769x0_config *config);
  * BQ_E_CONFIG (another part than configured, X0-SEQ-10); BQ_E_NO_CODE (a voltage limit this device cannot
  * hold); BQ_E_VERIFY; BQ_E_IMPLAUSIBLE (the trim is never the same twice, or nothing but zeros after three
  * boots); BQ_E_CELLS (inputs in use or shorted do not match, X0-SEQ-12); BQ_E_STALE (no first picture); a bus
- * error. FETs are off unless keep_fets, and after a failure even then. A fault that a running part has flagged
- * stands afterwards and is released as any other: a start releases nothing. */
+ * error. FETs are off unless keep_fets, and after a failure even then. A fault that a running part has
+ * flagged stands afterwards and is released as any other: a start releases nothing. */
 bq_status bq769x0_begin_start(bq769x0 *d);
 /** Begins one update: SYS_STAT, one block of all measurements, write-1-to-clear of CC_READY (three
  * transactions), and every second the scrub; then fault service and recovery when a fault bit is set.

@@ -109,12 +109,12 @@ typedef struct bq769x0 {
     uint8_t
         bus[BQ769X0_BUFFER]; /* as it travels: address, register, data; after a read the data without CRC */
     /* beyond 256 bytes */
+    bq769x0_config config;
+    bq_gpio gpio;
     bq_i2c_segment segments[2];
     uint16_t code[18];  /* of the last good picture: cells from the lowest on, [15] TS1.. */
     uint16_t fresh[20]; /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
     bq769x0_frame frames[BQ769X0_FRAMES + 1u];
-    bq769x0_config config;
-    bq_gpio gpio;
     bq769x0_counting counting;
     bq769x0_achieved achieved;
     uint16_t calibrated_mv[BQ769X0_INPUTS]; /* cells at the last calibration */
