@@ -106,8 +106,12 @@ static bq_status start(const bq_board *b, const char **what)
         return st;
     }
     *what = "firmware";
-    return bq_firmware_init(&firmware, b, &board_set.app, &afe, cells, BOARD_CELLS, temps, BOARD_SENSORS,
-                            modules, BOARD_MODULES);
+    st = bq_firmware_init(&firmware, b, &board_set.app, &afe, cells, BOARD_CELLS, temps, BOARD_SENSORS,
+                          modules, BOARD_MODULES);
+    if (st == BQ_OK && BOARD_PRECHARGE) {
+        bq_app_use_precharge(bq_firmware_app(&firmware));
+    }
+    return st;
 }
 
 /* ---- loop

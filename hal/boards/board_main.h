@@ -3,9 +3,10 @@
  * @file board_main.h
  * The main program that all boards share (board_main.c), and what it wants of each. A board's folder has
  *
- * - `board.h`: BOARD_CELLS, BOARD_SENSORS, BOARD_MODULES (room for the largest pack); board_parts, the
- *   peripherals in use, with at least `boot`, `time`, `uart`, `can`; board_config, what the settings hold,
- *   with at least `app`. At its end it includes this file.
+ * - `board.h`: BOARD_CELLS, BOARD_SENSORS, BOARD_MODULES (room for the largest pack); BOARD_PRECHARGE,
+ *   whether there is a precharge path; board_parts, the peripherals in use, with at least `boot`, `time`,
+ *   `uart`, `can`; board_config, what the settings hold, with at least `app`. At its end it includes this
+ *   file.
  * - `pins.h`: BOARD_PINS, BOARD_LED_PORT, BOARD_LED_PIN, BOARD_BAUD.
  * - the functions of the second part below, and the handlers of its own interrupts (vectors.c of the family
  *   lists their names). They only record.

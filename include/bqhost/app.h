@@ -42,9 +42,14 @@ typedef struct bq_app_config {
     uint32_t period_ms; /**< control period, 10..10000; comm_timeout_ms must be 2 periods or more */
     uint32_t retry_ms;  /**< pause between attempts at bring-up, wake, sleep and self-test, 100..60000; 0 =
                              1000 */
-    uint8_t balance_timer_s; /**< safety timer of the monitors' balancing outputs; 0 = they have none or
-                                  balancing is never used. 0.9 x timer must exceed the longest time between
-                                  two steps, 1.25 x period_ms (PL-CB-14) */
+    uint8_t balance_timer_s;   /**< safety timer of the monitors' balancing outputs; 0 = they have none or
+                                    balancing is never used. 0.9 x timer must exceed the longest time between
+                                    two steps, 1.25 x period_ms (PL-CB-14) */
+    uint16_t precharge_ms;     /**< how long the precharge path is closed alone before the contactor closes,
+                                   1..10000; 0 = the contactor closes directly. Needs bq_app_use_precharge() */
+    uint32_t precharge_end_ma; /**< current in either direction that may flow at the end of that time: more,
+                                   or an unknown current, is no charged load and the contactor stays open; 0
+                                   = not looked at; 0 while precharge_ms is 0 */
     bq_pack_config pack;
 } bq_app_config;
 
@@ -61,8 +66,9 @@ typedef struct bq_app_counters {
     uint32_t bring_ups;       /**< attempts at bring-up */
     uint32_t bring_up_failures;
     uint32_t self_test_failures;
-    uint32_t line_failures;    /**< contactor or feedback accesses that failed */
-    uint32_t ammeter_failures; /**< ammeter readings that failed, BQ_E_STALE excepted */
+    uint32_t line_failures;      /**< contactor or feedback accesses that failed */
+    uint32_t ammeter_failures;   /**< ammeter readings that failed, BQ_E_STALE excepted */
+    uint32_t precharge_failures; /**< precharge times that ended with too much or an unknown current */
 } bq_app_counters;
 
 typedef enum bq_app_job {
@@ -86,6 +92,7 @@ typedef struct bq_app {
     bool scanned; /* a scan has succeeded since the monitor is up */
     bool asleep;
     bool line_on, line_failed, mismatch, mismatch_told, current_seen;
+    bool precharging, precharge_failed;
     bq_app_job job;
     uint32_t last_us, ms_us, now_ms;    /* software-extended time; the clock when now_ms began */
     uint32_t period_us, tick_us;        /* when the present period began */
@@ -93,12 +100,13 @@ typedef struct bq_app {
     uint32_t wait_us;                   /* hint of the running job */
     uint32_t job_ms, retry_ms, scan_ms; /* job began, last retryable failure, last good scan */
     uint32_t copied_ms;                 /* when that picture was copied */
-    uint32_t current_age_ms, mismatch_ms;
+    uint32_t current_age_ms, mismatch_ms, precharge_ms;
     int32_t current_ma;
     bq_afe afe;
     bq_clock clock;
     bq_gpio gpio;
     bq_ammeter ammeter;
+    bq_status (*precharge)(struct bq_app *app, bool on);
     bq_action action, applied;
     bq_app_counters counters;
     bq_sample sample;
@@ -107,9 +115,9 @@ typedef struct bq_app {
 } bq_app;
 
 /**
- * Checks every field: the statuses of bq_pack_config_validate(), BQ_E_RANGE (period_ms, retry_ms),
- * BQ_E_CONFIG (comm_timeout_ms shorter than two periods; balance_timer_s too short for the period). `field`
- * as there.
+ * Checks every field: the statuses of bq_pack_config_validate(), BQ_E_RANGE (period_ms, retry_ms,
+ * precharge_ms, which also stands for precharge_end_ma without it), BQ_E_CONFIG (comm_timeout_ms shorter than
+ * two periods; balance_timer_s too short for the period). `field` as there.
  */
 bq_status bq_app_config_validate(const bq_app_config *config, const char **field);
 
@@ -135,6 +143,20 @@ bq_status bq_app_init(bq_app *app, const bq_app_config *config, const bq_afe *af
  * periods follow the clock, not the number of calls. UINT32_MAX if `app` is NULL.
  */
 uint32_t bq_app_step(bq_app *app);
+
+/**
+ * Tells that the board has a precharge path on BQ_LINE_PRECHARGE; to be called once after bq_app_init(). From
+ * then on, with precharge_ms in the configuration, closing means: the path closes, precharge_ms later
+ * (rounded up to a control period) the contactor closes if the current is then no more than precharge_end_ma,
+ * and BQ_PACK_MISMATCH_MS after that the path opens. Opening opens both, whatever was under way. A load that
+ * does not charge, and a path that cannot be switched, count as a contactor that does not follow: it stays
+ * open, the path opens, and the fault "contactor" is latched until the request is off. A monitor that can no
+ * longer be controlled meanwhile leaves the path closed for comm_timeout_ms + 2.5 x period_ms at most: its
+ * resistor must bear that.
+ * Without this call a configuration with precharge_ms never closes the contactor, which is that fault too.
+ * `app` must not be NULL.
+ */
+void bq_app_use_precharge(bq_app *app);
 
 /** What the user wants; initially BQ_REQUEST_OFF. Takes effect in the next bq_app_step(). BQ_OK; BQ_E_ARG
  *  (NULL, or not a bq_pack_request: the request stays as it was). */

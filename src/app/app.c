@@ -17,7 +17,7 @@ void bq_app_count(uint32_t *counter)
 /* ---- set-up ---------------------------------------------------------------------------------- */
 
 /* Number of the first field of the loop's own that cannot be, below; FIELDS: none. */
-enum { PERIOD, RETRY, TIMEOUT, TIMER, FIELDS };
+enum { PERIOD, RETRY, PRECHARGE, TIMEOUT, TIMER, FIELDS };
 
 static unsigned wrong_field(const bq_app_config *c)
 {
@@ -26,6 +26,9 @@ static unsigned wrong_field(const bq_app_config *c)
     }
     if (c->retry_ms != 0u && (c->retry_ms < 100u || c->retry_ms > 60000u)) {
         return RETRY;
+    }
+    if (c->precharge_ms > 10000u || (c->precharge_ms == 0u && c->precharge_end_ma != 0u)) {
+        return PRECHARGE;
     }
     if (c->pack.comm_timeout_ms < 2u * c->period_ms) {
         return TIMEOUT;
@@ -42,7 +45,7 @@ bq_status bq_app_config_validate(const bq_app_config *config, const char **field
     if (wrong != FIELDS) {
         status = wrong < TIMEOUT ? BQ_E_RANGE : BQ_E_CONFIG;
         if (field != NULL) {
-            *field = bq_word("period_ms\0retry_ms\0comm_timeout_ms\0balance_timer_s", wrong);
+            *field = bq_word("period_ms\0retry_ms\0precharge_ms\0comm_timeout_ms\0balance_timer_s", wrong);
         }
     }
     return status;

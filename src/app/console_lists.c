@@ -164,7 +164,7 @@ console_row console_counters(bq_console *c, const bq_app *app)
 {
     static const char format[] =
         "%[periods|steps|overruns|late scans|scan failures|sample failures|apply failures|bring-ups|"
-        "bring-up failures|self-test failures|line failures|ammeter failures|"
+        "bring-up failures|self-test failures|line failures|ammeter failures|precharge failures|"
         "transfers|bytes|scans|retries|crc errors|no answers|implausible|bus errors|write errors|"
         "recoveries] %0";
     const uint16_t loop = (uint16_t)(sizeof(bq_app_counters) / sizeof(uint32_t));

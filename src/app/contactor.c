@@ -13,10 +13,25 @@ static bq_status write_line(bq_app *app, bool on)
     return status == BQ_E_UNSUPPORTED ? BQ_OK : status;
 }
 
+/* BQ_PENDING: not yet. A board that was told to precharge and cannot never closes. */
+static bq_status precharge(bq_app *app, bool on)
+{
+    if (app->precharge != NULL) {
+        return app->precharge(app, on);
+    }
+    return on && app->config.precharge_ms != 0u ? BQ_E_UNSUPPORTED : BQ_OK;
+}
+
 bq_status bq_app_write_contactor(bq_app *app, bool on)
 {
-    const bq_status status = write_line(app, on);
+    bq_status status = precharge(app, on), line;
 
+    if (status == BQ_PENDING) {
+        return BQ_OK;
+    }
+    on = on && (status == BQ_OK || app->line_on);
+    line = write_line(app, on);
+    status = status == BQ_OK ? line : status;
     app->line_failed = status != BQ_OK;
     if (app->line_failed) {
         bq_app_count(&app->counters.line_failures);

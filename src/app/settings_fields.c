@@ -10,6 +10,8 @@ static const bq_field app_fields[] = {
     U(period_ms),
     U(retry_ms),
     U(balance_timer_s),
+    U(precharge_ms),
+    U(precharge_end_ma),
     U(pack.cells),
     U(pack.sensors),
     U(pack.modules),

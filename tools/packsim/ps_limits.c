@@ -59,6 +59,8 @@ static const struct {
     AFE_DRIVER(balance_across_groups, true),
     AFE_DRIVER(keep_fets, true),
     {"retry_ms", offsetof(ps_scenario, app.retry_ms), sizeof(uint32_t), ANY, false},
+    {"precharge_ms", offsetof(ps_scenario, app.precharge_ms), sizeof(uint16_t), ANY, false},
+    {"precharge_end_ma", offsetof(ps_scenario, app.precharge_end_ma), sizeof(uint32_t), ANY, false},
     {"soc_rest_ma", offsetof(ps_scenario, app.pack.soc.rest_ma), sizeof(int32_t), ANY, false},
     {"soc_rest_ms", offsetof(ps_scenario, app.pack.soc.rest_ms), sizeof(uint32_t), ANY, false},
     {"soc_gap_ms", offsetof(ps_scenario, app.pack.soc.gap_ms), sizeof(uint32_t), ANY, false},

@@ -61,8 +61,12 @@ static bq_status boot(ps_rig *r, bq_reset_cause cause)
     r->boot = (bq_boot){.cause = cause, .image_ok = true};
     r->reset_asked = false;
     r->fed_t = ps_rig_now(r);
-    return bq_firmware_init(&f->firmware, &board, &r->s->app, &r->afe, f->cells, SIM_CELLS_MAX, f->temps,
-                            SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
+    status = bq_firmware_init(&f->firmware, &board, &r->s->app, &r->afe, f->cells, SIM_CELLS_MAX, f->temps,
+                              SIM_CELLS_MODULES * SIM_CELLS_SENSORS, f->modules, SIM_CELLS_MODULES);
+    if (status == BQ_OK) {
+        bq_app_use_precharge(bq_firmware_app(&f->firmware));
+    }
+    return status;
 }
 
 static void keep_stats(ps_rig *r)

@@ -17,6 +17,7 @@
 #define BOARD_CELLS (BOARD_DEVICES * BQ76PL536_MAX_CELLS)
 #define BOARD_SENSORS (BOARD_DEVICES * 2u)
 #define BOARD_MODULES BOARD_DEVICES
+#define BOARD_PRECHARGE true
 #define BOARD_OCV_POINTS 64u
 
 /** The peripherals in use. */

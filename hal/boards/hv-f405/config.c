@@ -38,6 +38,8 @@ void board_defaults(board_config *c)
     memset(c->cells, DEFAULT_CELLS, sizeof c->cells);
     c->app.period_ms = 100;
     c->app.retry_ms = 1000;
+    c->app.precharge_ms = 300;
+    c->app.precharge_end_ma = 2000;
     c->app.balance_timer_s = stack_defaults.balance_timer_s;
     c->app.pack = bq_pack_config_nmc(DEFAULT_DEVICES * DEFAULT_CELLS, DEFAULT_DEVICES * 2u, DEFAULT_DEVICES);
     c->app.pack.soc.ocv = c->ocv;

@@ -14,6 +14,7 @@
 #define BOARD_CELLS 15u
 #define BOARD_SENSORS 3u
 #define BOARD_MODULES 1u
+#define BOARD_PRECHARGE false
 #define BOARD_OCV_POINTS 64u
 
 /** The peripherals in use. */

@@ -73,10 +73,20 @@ static void contactor(bool high)
         hv.closed++;
         hv.closed_ns = hv.now_ns;
         hv.unsafe += hv.forbidden;
+        hv.precharged_ns = hv.precharge ? hv.now_ns - hv.path_ns : 0;
     } else if (!high && hv.contactor) {
         hv.opened_ns = hv.now_ns;
     }
     hv.contactor = high;
+}
+
+static void precharge(bool high)
+{
+    if (high && !hv.precharge) {
+        hv.unsafe += hv.forbidden;
+        hv.path_ns = hv.now_ns;
+    }
+    hv.precharge = high;
 }
 
 static void pin_out(void *ctx, unsigned port, unsigned pin, emu_drive drive)
@@ -86,8 +96,7 @@ static void pin_out(void *ctx, unsigned port, unsigned pin, emu_drive drive)
     if (port == PORT_C && pin == 6) {
         contactor(high);
     } else if (port == PORT_C && pin == 7) {
-        hv.precharge = high;
-        hv.unsafe += high;
+        precharge(high);
     } else if (port == PORT_C && pin == 13) {
         hv.led = high;
     } else if (port == PORT_A && pin == 4) {

@@ -20,14 +20,16 @@ typedef struct hv_world {
     noise noise;
     bool request, contactor, precharge, led;
     hv_feedback feedback;
-    bool forbidden;        /* the contactor must not close now */
-    unsigned unsafe;       /* times it did, or precharge did at any time */
-    unsigned closed;       /* times it closed */
-    uint64_t opened_ns;    /* last time it opened */
-    uint64_t closed_ns;    /* last time it closed */
-    emu_can_result result; /* of every frame sent */
-    bool dead_wire;        /* CAN held dominant */
-    uint32_t frames;       /* sent, whatever became of them */
+    bool forbidden;         /* neither contactor nor precharge must close now */
+    unsigned unsafe;        /* times one of them did */
+    uint64_t path_ns;       /* last time the precharge path closed */
+    uint64_t precharged_ns; /* how long it was closed when the contactor closed last; 0 = it was open */
+    unsigned closed;        /* times it closed */
+    uint64_t opened_ns;     /* last time it opened */
+    uint64_t closed_ns;     /* last time it closed */
+    emu_can_result result;  /* of every frame sent */
+    bool dead_wire;         /* CAN held dominant */
+    uint32_t frames;        /* sent, whatever became of them */
     emu_can_frame last[16];
     unsigned count[16];           /* acknowledged, of each id from 0x100 on */
     uint64_t on_ns, settled_ns;   /* first heartbeat with the state on; with standby or on */

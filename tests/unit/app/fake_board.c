@@ -139,13 +139,27 @@ static const bq_afe_ops afe_ops = {start,     scan,        poll, sample,        
 
 /* ---- lines, clock, ammeter ------------------------------------------------------------------- */
 
+/* Noted where it moves, and when the loop opens it without knowing how it stands. */
+static bq_status write_path(fake_board *f, bool level)
+{
+    if (!f->has_path || f->path != level) {
+        note(f, level ? 'p' : 'P');
+    }
+    if (!f->has_path) {
+        return BQ_E_UNSUPPORTED;
+    }
+    if (f->path_status == BQ_OK) {
+        f->path = level;
+    }
+    return f->path_status;
+}
+
 static bq_status write_line(void *ctx, bq_line line, bool level)
 {
     fake_board *f = ctx;
 
     if (line == BQ_LINE_PRECHARGE) {
-        note(f, level ? 'p' : 'P');
-        return BQ_OK;
+        return write_path(f, level);
     }
     if (line != BQ_LINE_CONTACTOR || !f->has_contactor) {
         return BQ_E_UNSUPPORTED;

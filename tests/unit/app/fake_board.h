@@ -39,7 +39,9 @@ typedef struct fake_board {
     bq_status sample_status; /* BQ_OK = copy */
     bq_action applied;
     /* lines */
-    bool closed; /* level of the contactor line */
+    bool closed;         /* level of the contactor line */
+    bool has_path, path; /* precharge: is there one, and its level */
+    bq_status path_status;
     bool has_feedback, welded, stuck_open;
     uint32_t feedback_us; /* delay of the feedback contact */
     uint32_t moved_us;
@@ -54,7 +56,7 @@ typedef struct fake_board {
     int32_t ma;
     bq_status ammeter_status;
     /* order of things: s scan, m sample, a apply, t self-test, b bring-up, z sleep, w wake, 0 open, 1 closed,
-     * P precharge off */
+     * p precharge on, P off */
     char order[64];
     unsigned orders;
     uint64_t opened_us; /* passed_us at the last falling edge of the contactor line */

@@ -132,7 +132,7 @@ static void test_counters_of_loop_and_link(void)
     t.board.link.recoveries = 4000000000u;
     t.board.link.packets = 17;
     answers("counters", "periods ");
-    TEST_ASSERT_NOT_NULL(strstr(t.text, "\r\nammeter failures 0\r\ntransfers 17\r\nbytes 0\r\n"));
+    TEST_ASSERT_NOT_NULL(strstr(t.text, "\r\nammeter failures 0\r\nprecharge failures 0\r\ntransfers 17\r\nbytes 0\r\n"));
     TEST_ASSERT_NOT_NULL(strstr(t.text, "\r\nrecoveries 4000000000\r\n> "));
     t.board.has_link = false;
     TEST_ASSERT_NULL(strstr(terminal_ask(&t, "counters"), "transfers"));

@@ -67,7 +67,7 @@ static void test_crc_is_that_of_zlib(void)
 
 static void test_the_form_of_a_record(void)
 {
-    const size_t words = 5u + 35u + 2u * 64u + 30u + 62u; /* head, loop and pack, curve, driver, cells */
+    const size_t words = 5u + 37u + 2u * 64u + 30u + 62u; /* head, loop and pack, curve, driver, cells */
     const size_t len = bq_settings_encode(&a.settings, 0x01020304u, record, sizeof record);
 
     TEST_ASSERT_EQUAL((words + 1u) / 2u * 8u, len);
@@ -77,7 +77,7 @@ static void test_the_form_of_a_record(void)
     TEST_ASSERT_EQUAL_HEX32(bq_settings_layout(&a.settings), word(3));
     TEST_ASSERT_EQUAL_HEX32(0x01020304u, word(4));
     TEST_ASSERT_EQUAL(100, word(5));                      /* period_ms */
-    TEST_ASSERT_EQUAL_HEX32(0xffffff38u, word(5u + 12u)); /* undertemp_dc = -200 */
+    TEST_ASSERT_EQUAL_HEX32(0xffffff38u, word(5u + 14u)); /* undertemp_dc = -200 */
     TEST_ASSERT_EQUAL_HEX32(a.cells[BQ76PL536_MAX_DEVICES - 1u], word(words - 1u));
     TEST_ASSERT_EQUAL(0, bq_settings_encode(&a.settings, 1, record, len - 1u));
     a.parts[3].count--; /* an odd number of words is filled up */
@@ -137,7 +137,7 @@ static void test_tables_leave_no_field_out(void)
         bq76pl536_config stack;
         bq769x0_config afe;
     } u;
-    const size_t app = 2u * 4u + 1u + 21u * 2u + 2u * 1u + 3u * 4u + 1u + 2u + 4u * 4u;
+    const size_t app = 3u * 4u + 1u + 22u * 2u + 2u * 1u + 3u * 4u + 1u + 2u + 4u * 4u;
     const size_t stack = 18u * 1u + 9u * 2u + 3u * 4u;
     const size_t afe = 15u * 1u + 11u * 2u + 4u * 4u;
 
@@ -207,12 +207,12 @@ static void test_a_value_out_of_range_refuses_the_whole_record(void)
         uint32_t good, bad;
     } values[] = {
         {5u + 2u, 255, 256},                  /* balance_timer_s, 8 bits */
-        {5u + 3u, 65535, 65536},              /* cells, 16 bits */
-        {5u + 12u, 0xffff8000u, 0xffff7fffu}, /* undertemp_dc, 16 bits signed */
-        {5u + 12u, 32767, 32768},
-        {5u + 29u, 1, 2},                        /* separate_paths */
-        {5u + 30u, 64, 65},                      /* points of the curve */
-        {5u + 35u + 128u + 30u + 61u, 255, 256}, /* cells of the last device: the last value of all */
+        {5u + 5u, 65535, 65536},              /* cells, 16 bits */
+        {5u + 14u, 0xffff8000u, 0xffff7fffu}, /* undertemp_dc, 16 bits signed */
+        {5u + 14u, 32767, 32768},
+        {5u + 31u, 1, 2},                        /* separate_paths */
+        {5u + 32u, 64, 65},                      /* points of the curve */
+        {5u + 37u + 128u + 30u + 61u, 255, 256}, /* cells of the last device: the last value of all */
     };
 
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
@@ -242,7 +242,7 @@ static void test_a_newer_record_that_cannot_be_used_is_not_replaced_by_an_older_
     (void)place(1, 8);
     place_changed(4, 9); /* sector 0, newer, same layout: in force */
     TEST_ASSERT_EQUAL(BQ_OK, bq_settings_load(&b.settings, &nvm));
-    set_word(5u + 29u, 2); /* separate_paths */
+    set_word(5u + 31u, 2); /* separate_paths */
     set_word(1, bq_crc32(0, record + 8, (word(2) & 0xffffu) * 4u - 8u));
     memcpy(flash.memory[0], record, (word(2) & 0xffffu) * 4u);
     refused(BQ_E_RANGE);
@@ -273,7 +273,7 @@ static void test_sequence_numbers_wrap(void)
 
 static void test_lengths_that_lie_are_no_record(void)
 {
-    static const uint32_t lengths[] = {0, 4, 5, 259, 514, 0xfffe};
+    static const uint32_t lengths[] = {0, 4, 5, 261, 514, 0xfffe};
 
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         place_changed(2, 1u << 16 | lengths[i]);
@@ -293,9 +293,9 @@ static void test_arguments(void)
     bad.sectors = 1;
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));
     bad = nvm;
-    bad.sector_bytes = 1039; /* the record has 260 words */
+    bad.sector_bytes = 1047; /* the record has 262 words */
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));
-    bad.sector_bytes = 1040;
+    bad.sector_bytes = 1048;
     TEST_ASSERT_EQUAL(BQ_E_NOT_FOUND, bq_settings_load(&b.settings, &bad));
     bad.ops = NULL;
     TEST_ASSERT_EQUAL(BQ_E_ARG, bq_settings_load(&b.settings, &bad));

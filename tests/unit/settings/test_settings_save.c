@@ -96,7 +96,7 @@ static void lose_power_everywhere(uint8_t unit, uint8_t torn)
     operations = flash.operations;
     TEST_ASSERT_EQUAL(BQ_OK, save(4003));
     operations = flash.operations - operations; /* of one save */
-    TEST_ASSERT_EQUAL(1 + 260 * 4 / unit, operations);
+    TEST_ASSERT_EQUAL(1 + 262 * 4 / unit, operations);
     for (long at = 0; at < operations; at++) {
         start(unit, 2);
         TEST_ASSERT_EQUAL(BQ_OK, save(4001));
@@ -130,12 +130,12 @@ static void test_power_lost_in_any_unit_leaves_the_old_record_in_force(void)
 /* Nothing was there before: nothing is there after, or it is told. */
 static void test_power_lost_in_the_first_save_of_all(void)
 {
-    for (long at = 0; at < 131; at++) {
+    for (long at = 0; at < 132; at++) {
         start(8, 2);
         flash.power_until = at;
         flash.torn = 0x5a;
         (void)save(4001);
-        TEST_ASSERT_EQUAL(at > 0 && at < 130 ? BQ_E_NOT_FOUND : BQ_E_CRC, found());
+        TEST_ASSERT_EQUAL(at > 0 && at < 131 ? BQ_E_NOT_FOUND : BQ_E_CRC, found());
     }
 }
 
