@@ -12,7 +12,7 @@
 #define CHUNK (0xffu << STM32_I2C_CR2_NBYTES_SHIFT | STM32_I2C_CR2_RELOAD | STM32_I2C_CR2_AUTOEND)
 
 /* PE low for three cycles of APB and more resets the state machine and releases the lines. */
-static void peripheral_off(void)
+void stm32_i2c_off(void)
 {
     STM32_I2C1->cr1 = 0;
     for (int i = 0; i < 3; i++) {
@@ -20,21 +20,21 @@ static void peripheral_off(void)
     }
 }
 
-static void peripheral_on(void)
+void stm32_i2c_on(void)
 {
+    STM32_RCC_CFGR3 &= ~STM32_RCC_CFGR3_I2C1SW;
     STM32_I2C1->timingr = STM32_I2C_TIMINGR;
     STM32_I2C1->cr1 = STM32_I2C_CR1_PE; /* the analog filter is on after reset */
 }
 
-void stm32_i2c_init(stm32_i2c *i2c, stm32_time *time, unsigned port, unsigned scl, unsigned sda, unsigned af)
+void stm32_i2c_irqs_enable(void)
 {
-    *i2c = (stm32_i2c){
-        .time = time, .port = (uint8_t)port, .scl = (uint8_t)scl, .sda = (uint8_t)sda, .af = (uint8_t)af};
-    STM32_RCC_CFGR3 &= ~STM32_RCC_CFGR3_I2C1SW;
-    stm32_apb1_enable(STM32_APB1_I2C1);
-    peripheral_off();
-    peripheral_on();
     stm32_irq_enable(STM32_IRQ_I2C1, 1);
+}
+
+bool stm32_i2c_bus_free(const stm32_i2c *i2c)
+{
+    return (STM32_I2C1->isr & STM32_I2C_ISR_BUSY) == 0u && stm32_i2c_lines_free(i2c);
 }
 
 /* ---- the transaction
@@ -54,11 +54,20 @@ static uint32_t chunk(const stm32_i2c *i2c)
 
 static void begin_segment(stm32_i2c *i2c, const bq_i2c_segment *s)
 {
-    i2c->segment = s;
-    i2c->at = s->data;
-    i2c->end = s->data + s->len;
+    stm32_i2c_enter(i2c, s);
     STM32_I2C1->cr2 = (uint32_t)i2c->address7 << STM32_I2C_CR2_SADD7_SHIFT |
                       (s->read ? STM32_I2C_CR2_RD_WRN : 0u) | chunk(i2c) | STM32_I2C_CR2_START;
+}
+
+void stm32_i2c_begin(stm32_i2c *i2c, const bq_i2c_segment *s)
+{
+    STM32_I2C1->cr1 = STM32_I2C_CR1_PE | INTERRUPTS;
+    begin_segment(i2c, s);
+}
+
+void stm32_i2c_look(stm32_i2c *i2c)
+{
+    (void)i2c; /* the interrupts do everything */
 }
 
 static void end(stm32_i2c *i2c)
@@ -66,14 +75,6 @@ static void end(stm32_i2c *i2c)
     STM32_I2C1->cr1 = STM32_I2C_CR1_PE;
     i2c->busy = false;
     stm32_time_event(i2c->time);
-}
-
-static void cut_off(stm32_i2c *i2c, bq_status why)
-{
-    i2c->result = why;
-    peripheral_off();
-    peripheral_on();
-    end(i2c);
 }
 
 static void move_byte(stm32_i2c *i2c, uint32_t isr)
@@ -116,7 +117,7 @@ void stm32_i2c_irq(stm32_i2c *i2c)
         return;
     }
     if ((isr & (STM32_I2C_ISR_ARLO | STM32_I2C_ISR_BERR)) != 0u) {
-        cut_off(i2c, (isr & STM32_I2C_ISR_ARLO) != 0u ? BQ_E_ARBITRATION : BQ_E_BUS);
+        stm32_i2c_cut_off(i2c, (isr & STM32_I2C_ISR_ARLO) != 0u ? BQ_E_ARBITRATION : BQ_E_BUS);
         return;
     }
     move_byte(i2c, isr);
@@ -133,71 +134,4 @@ void stm32_i2c_irq(stm32_i2c *i2c)
     if ((isr & STM32_I2C_ISR_STOPF) != 0u) {
         take_stop(i2c);
     }
-}
-
-/* ---- bq_i2c
- * ----------------------------------------------------------------------------------------------------- */
-
-static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *segments, size_t count)
-{
-    stm32_i2c *i2c = ctx;
-    if (!stm32_i2c_legal(address7, segments, count)) {
-        return BQ_E_ARG;
-    }
-    if (i2c->busy || i2c->owed) {
-        return BQ_E_BUSY;
-    }
-    if ((STM32_I2C1->isr & STM32_I2C_ISR_BUSY) != 0u || !stm32_i2c_lines_free(i2c)) {
-        return BQ_E_ARBITRATION;
-    }
-    i2c->address7 = address7;
-    i2c->last = segments + count - 1u;
-    i2c->result = BQ_OK;
-    i2c->limit_us = stm32_i2c_limit_us(segments, count);
-    i2c->from_us = stm32_now_us();
-    i2c->owed = true;
-    i2c->busy = true;
-    STM32_I2C1->cr1 = STM32_I2C_CR1_PE | INTERRUPTS;
-    begin_segment(i2c, segments);
-    return BQ_OK;
-}
-
-static bq_status i2c_poll(void *ctx)
-{
-    stm32_i2c *i2c = ctx;
-    uint32_t mask = stm32_lock();
-    if (i2c->busy && stm32_now_us() - i2c->from_us > i2c->limit_us) {
-        cut_off(i2c, BQ_E_TIMEOUT);
-    }
-    stm32_unlock(mask);
-    if (i2c->busy) {
-        return BQ_PENDING;
-    }
-    if (!i2c->owed) {
-        return BQ_OK;
-    }
-    i2c->owed = false;
-    return i2c->result;
-}
-
-static bq_status i2c_recover(void *ctx)
-{
-    stm32_i2c *i2c = ctx;
-    bq_status st;
-    if (i2c->busy) {
-        uint32_t mask = stm32_lock();
-        cut_off(i2c, BQ_E_BUS);
-        stm32_unlock(mask);
-    }
-    peripheral_off();
-    st = stm32_i2c_free_lines(i2c);
-    peripheral_on();
-    return st;
-}
-
-bq_i2c stm32_i2c_bus(stm32_i2c *i2c)
-{
-    static const bq_i2c_ops ops = {i2c_start, i2c_poll, i2c_recover};
-    bq_i2c bus = {&ops, i2c};
-    return bus;
 }

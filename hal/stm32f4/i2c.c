@@ -56,16 +56,41 @@ enum step {
 /* ---- the peripheral ---------------------------------------------------------------------------------------
  */
 
-static void peripheral_reset(void)
+void stm32_i2c_off(void)
 {
     I2C1->cr1 = CR1_SWRST;
     (void)I2C1->cr1;
     I2C1->cr1 = 0;
+}
+
+void stm32_i2c_on(void)
+{
+    stm32_i2c_off(); /* BUSY follows the lines while the peripheral is off, too */
     I2C1->cr2 = CR2_FREQ;
     I2C1->oar1 = OAR1_ALWAYS;
     I2C1->ccr = (STM32_APB1_HZ + 2u * SPEED_HZ - 1u) / (2u * SPEED_HZ);
     I2C1->trise = TRISE;
     I2C1->cr1 = CR1_PE;
+}
+
+void stm32_i2c_irqs_enable(void)
+{
+    stm32_irq_enable(STM32_IRQ_I2C1_EV, 0); /* the clock is held for most of its events, not for all */
+    stm32_irq_enable(STM32_IRQ_I2C1_ER, 0);
+}
+
+static bool bus_free(const stm32_i2c *i2c)
+{
+    return stm32_i2c_lines_free(i2c) && (I2C1->sr2 & SR2_BUSY) == 0u;
+}
+
+/* The filter may have left BUSY set by a disturbance (ES0182). */
+bool stm32_i2c_bus_free(const stm32_i2c *i2c)
+{
+    if (!bus_free(i2c)) {
+        stm32_i2c_on();
+    }
+    return bus_free(i2c);
 }
 
 static void interrupts(uint32_t which)
@@ -88,9 +113,7 @@ static uint32_t left(const stm32_i2c *i2c)
 
 static void enter(stm32_i2c *i2c, const bq_i2c_segment *s)
 {
-    i2c->segment = s;
-    i2c->at = s->data;
-    i2c->end = s->data + s->len;
+    stm32_i2c_enter(i2c, s);
     i2c->step = STEP_START;
 }
 
@@ -252,55 +275,14 @@ void stm32_i2c_irq(stm32_i2c *i2c)
     }
 }
 
-/* ---- bq_i2c
- * ------------------------------------------------------------------------------------------------ */
+/* ---- from the main loop
+ * ------------------------------------------------------------------------------------ */
 
-static void begin(stm32_i2c *i2c, const bq_i2c_segment *s)
+void stm32_i2c_begin(stm32_i2c *i2c, const bq_i2c_segment *s)
 {
     enter(i2c, s);
     I2C1->cr1 = CR1_PE | CR1_START;
     interrupts(CR2_ITERREN | CR2_ITEVTEN);
-}
-
-static bool bus_free(const stm32_i2c *i2c)
-{
-    return stm32_i2c_lines_free(i2c) && (I2C1->sr2 & SR2_BUSY) == 0u;
-}
-
-static bq_status i2c_start(void *ctx, uint8_t address7, const bq_i2c_segment *segments, size_t count)
-{
-    stm32_i2c *i2c = ctx;
-    if (!stm32_i2c_legal(address7, segments, count)) {
-        return BQ_E_ARG;
-    }
-    if (i2c->busy || i2c->owed) {
-        return BQ_E_BUSY;
-    }
-    if (!bus_free(i2c)) {
-        peripheral_reset(); /* the filter may have left BUSY set by a disturbance (ES0182) */
-        if (!bus_free(i2c)) {
-            return BQ_E_ARBITRATION;
-        }
-    }
-    i2c->address7 = address7;
-    i2c->last = segments + count - 1u;
-    i2c->result = BQ_OK;
-    i2c->limit_us = stm32_i2c_limit_us(segments, count);
-    i2c->from_us = stm32_now_us();
-    i2c->owed = true;
-    i2c->busy = true;
-    begin(i2c, segments);
-    return BQ_OK;
-}
-
-static void cut_off(stm32_i2c *i2c, bq_status why)
-{
-    uint32_t mask = stm32_lock();
-    i2c->result = why;
-    i2c->step = STEP_IDLE;
-    peripheral_reset();
-    i2c->busy = false;
-    stm32_unlock(mask);
 }
 
 /* No interrupt tells that a STOP is over; it takes about 10 us. */
@@ -310,70 +292,18 @@ static void after_stop(stm32_i2c *i2c)
         return;
     }
     if (i2c->result == BQ_OK && i2c->segment != i2c->last) {
-        begin(i2c, i2c->segment + 1);
+        stm32_i2c_begin(i2c, i2c->segment + 1);
     } else {
         i2c->step = STEP_IDLE;
         i2c->busy = false;
     }
 }
 
-static void advance(stm32_i2c *i2c)
+void stm32_i2c_look(stm32_i2c *i2c)
 {
     if (i2c->step == STEP_BROKEN) {
-        cut_off(i2c, i2c->result);
+        stm32_i2c_cut_off(i2c, i2c->result);
     } else if (i2c->step == STEP_STOP) {
         after_stop(i2c);
     }
-    if (i2c->busy && stm32_now_us() - i2c->from_us > i2c->limit_us) {
-        cut_off(i2c, BQ_E_TIMEOUT);
-    }
-}
-
-static bq_status i2c_poll(void *ctx)
-{
-    stm32_i2c *i2c = ctx;
-    if (i2c->busy) {
-        advance(i2c);
-    }
-    if (i2c->busy) {
-        return BQ_PENDING;
-    }
-    if (!i2c->owed) {
-        return BQ_OK;
-    }
-    i2c->owed = false;
-    return i2c->result;
-}
-
-static bq_status i2c_recover(void *ctx)
-{
-    stm32_i2c *i2c = ctx;
-    bq_status st;
-    if (i2c->busy) {
-        cut_off(i2c, BQ_E_BUS);
-    }
-    I2C1->cr1 = 0;
-    st = stm32_i2c_free_lines(i2c);
-    peripheral_reset();
-    return st;
-}
-
-/* ---- set-up
- * ------------------------------------------------------------------------------------------------- */
-
-void stm32_i2c_init(stm32_i2c *i2c, stm32_time *time, unsigned port, unsigned scl, unsigned sda, unsigned af)
-{
-    *i2c = (stm32_i2c){
-        .time = time, .port = (uint8_t)port, .scl = (uint8_t)scl, .sda = (uint8_t)sda, .af = (uint8_t)af};
-    stm32_apb1_enable(STM32_APB1_I2C1);
-    peripheral_reset();
-    stm32_irq_enable(STM32_IRQ_I2C1_EV, 0); /* the clock is held for most of its events, not for all */
-    stm32_irq_enable(STM32_IRQ_I2C1_ER, 0);
-}
-
-bq_i2c stm32_i2c_bus(stm32_i2c *i2c)
-{
-    static const bq_i2c_ops ops = {i2c_start, i2c_poll, i2c_recover};
-    bq_i2c bus = {&ops, i2c};
-    return bus;
 }

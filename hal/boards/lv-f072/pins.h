@@ -25,7 +25,6 @@
 #define BOARD_I2C_PORT STM32_PORT_B
 #define BOARD_I2C_SCL 6u
 #define BOARD_I2C_SDA 7u
-#define BOARD_I2C_AF 1u
 #define BOARD_BAUD 115200u
 #define BOARD_NVM {{0x0801F000u, 0x0801F800u}, 2048u} /* the last two pages */
 

@@ -20,7 +20,7 @@ case $preset in *-clang) command -v clang-19 >/dev/null && command -v ld.lld-19 
 limits() { # flash and RAM in bytes
     case $preset in
     lv-f072) echo 32768 8192 ;;
-    lv-f072-clang) echo 39936 8192 ;;
+    lv-f072-clang) echo 36352 8192 ;;
     f072-nvm | f405-nvm) echo 16384 4096 ;;
     hv-f405* | f405-afe) echo 49152 20480 ;;
     *) echo 0 0 ;;

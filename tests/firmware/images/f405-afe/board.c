@@ -37,7 +37,7 @@ void board_peripherals(void)
 {
     stm32_supply_init();
     stm32_irq_enable(STM32_IRQ_EXTI9_5, 3);
-    stm32_i2c_init(&board_hw.i2c, &board_hw.time, BOARD_I2C_PORT, BOARD_I2C_SCL, BOARD_I2C_SDA, BOARD_I2C_AF);
+    stm32_i2c_init(&board_hw.i2c, &board_hw.time, BOARD_I2C_PORT, BOARD_I2C_SCL, BOARD_I2C_SDA);
 }
 
 void board_offer(bq_board *b)

@@ -25,7 +25,6 @@
 #define BOARD_I2C_PORT STM32_PORT_B
 #define BOARD_I2C_SCL 6u
 #define BOARD_I2C_SDA 7u
-#define BOARD_I2C_AF 4u
 #define BOARD_BAUD 115200u
 #define BOARD_NVM {{0x0800C000u, 0x08010000u}, 16384u} /* sectors 3 and 4 */
 
