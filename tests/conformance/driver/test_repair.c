@@ -151,6 +151,92 @@ static void flags_that_cannot_be_read_leave_no_valid_reading(void)
     TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, MODULE(1)->faults);
 }
 
+/* Parity: the shadow registers come from the EPROM first, then from the driver; a comparator's flag beside it
+ * is told in the same scan. */
+/* proves: PL-SEQ-15-01, PL-SEQ-08-03 */
+static void parity_begins_with_a_refresh(void)
+{
+    int refresh, key;
+    bench_ready(2, NULL);
+    sim_pl_set_cell(&b.pl, 2, 1, 4.3);
+    bench_wait_ms(1500);
+    sim_pl_damage_ram(&b.pl, 2, 0x43, 0x04);
+    bench_mark();
+    scans(1, 0);
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_CELL_OV, MODULE(2)->faults & BQ_F_CELL_OV);
+    refresh = bench_find(0, W(2), 0x3a);
+    TEST_ASSERT_TRUE(refresh >= 0);
+    TEST_ASSERT_EQUAL_HEX8(0x27, b.log[refresh].tx[2]);
+    key = bench_find(refresh + 1, W(2), 0x3a);
+    TEST_ASSERT_TRUE(key > refresh);
+    TEST_ASSERT_EQUAL_HEX8(0x35, b.log[key].tx[2]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, PEEK(2, 0x25) | PEEK(2, 0x24));
+    bench_no_misuse();
+}
+
+static uint8_t claimed; /* what device 1 claims of ALERT_STATUS and FAULT_STATUS besides the truth */
+static bool in_fault;
+
+static bool claim(void *ctx, uint8_t *tx, uint8_t *rx, uint32_t n)
+{
+    uint8_t all[24];
+    (void)ctx;
+    if (tx[0] != RD(1) || tx[1] != 0x20 || claimed == 0) {
+        return false;
+    }
+    memcpy(all, tx, 3);
+    for (uint32_t i = 3; i + 1 < n; i++) {
+        all[i] = (uint8_t)PEEK(1, (uint8_t)(0x20 + (int)i - 3));
+    }
+    all[in_fault ? 4 : 3] |= claimed;
+    all[n - 1] = bench_crc(all, n - 1);
+    memset(rx, 0, 3);
+    memcpy(rx + 3, all + 3, n - 3);
+    claimed = 0; /* once */
+    return true;
+}
+
+/* A device that says that it was reset is configured again in the same scan, also where it still has its
+ * address. */
+/* proves: PL-SEQ-08-05 */
+static void a_reset_that_is_only_told_is_believed(void)
+{
+    for (int fault = 0; fault <= 1; fault++) {
+        bench_ready(2, NULL);
+        sim_pl_set_ts_ratio(&b.pl, 1, 1, 0.32); /* makes the driver look */
+        bench_wait_ms(1500);
+        bench_raw_write(1, 0x3a, 0x35);
+        bench_raw_write(1, 0x42, 0x3c);
+        TEST_ASSERT_EQUAL_HEX8(0x3c, PEEK(1, 0x42));
+        claimed = fault ? 0x08 : 0x80; /* POR, AR */
+        in_fault = fault != 0;
+        sim_pl_bus_fault(&b.pl)->hook = claim;
+        scans(1, 0);
+        sim_pl_bus_fault(&b.pl)->hook = NULL;
+        TEST_ASSERT_EQUAL_HEX8(0, claimed);
+        TEST_ASSERT_EQUAL_HEX16(BQ_F_RESET, MODULE(1)->faults & BQ_F_RESET);
+        TEST_ASSERT_EQUAL_HEX8(0, CELL(1, 1)->quality & BQ_Q_VALID);
+        TEST_ASSERT_EQUAL_HEX8(0x2c, PEEK(1, 0x42));
+    }
+}
+
+/* proves: PL-SEQ-15-03 */
+static void heat_is_polled_once_a_second(void)
+{
+    int tries = 0;
+    bench_ready(2, NULL);
+    sim_pl_set_tdie(&b.pl, 2, 150);
+    bench_wait_ms(10);
+    scans(1, 100);
+    bench_mark();
+    scans(100, 95);
+    TEST_ASSERT_TRUE(b.packets < BENCH_LOG);
+    for (uint32_t i = 0; i < b.packets; i++) {
+        tries += b.log[i].tx[0] == W(2) && b.log[i].tx[1] == 0x20 && (b.log[i].tx[2] & 0x08) != 0;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(tries >= 8 && tries <= 24, bench_text("%d in 10 s", tries)); /* two a try */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -159,5 +245,8 @@ int main(void)
     RUN_TEST(clearing_force_leaves_the_comparators);
     RUN_TEST(sensors_settle_after_heat);
     RUN_TEST(flags_that_cannot_be_read_leave_no_valid_reading);
+    RUN_TEST(parity_begins_with_a_refresh);
+    RUN_TEST(a_reset_that_is_only_told_is_believed);
+    RUN_TEST(heat_is_polled_once_a_second);
     return UNITY_END();
 }
