@@ -62,7 +62,10 @@ static void step(bq769x0 *d)
     d->result = next;
     do {
         f--;
-    } while (next != BQ_OK && (f->next & X0_CATCH) == 0);
+        if (next == BQ_OK) {
+            break;
+        }
+    } while ((f->next & X0_CATCH) == 0);
     d->top = f;
 }
 
@@ -71,15 +74,15 @@ static void step(bq769x0 *d)
 
 bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us)
 {
-    int32_t left = 0;
+    int32_t left;
     if (d == NULL) {
         return BQ_E_ARG;
     }
     x0_tick(d);
     if (d->transfer == BQ_PENDING) {
         d->transfer = d->i2c.ops->poll(d->i2c.ctx);
+        left = (int32_t)(d->due_us - d->now_us);
         if (d->transfer == BQ_PENDING) {
-            left = (int32_t)(d->due_us - d->now_us);
             if (left > -PATIENCE_US) {
                 left = left < AGAIN_US ? AGAIN_US : left;
                 goto out;
@@ -88,13 +91,16 @@ bq_status bq769x0_poll(bq769x0 *d, uint32_t *wait_us)
         }
         d->due_us = d->now_us;
     }
-    while (d->top->job != NULL) {
+    for (;;) {
+        if (d->top->job == NULL) {
+            left = 0;
+            break;
+        }
         left = (int32_t)(d->due_us - d->now_us);
         if (left > 0) {
-            goto out;
+            break;
         }
         step(d);
-        left = 0;
     }
 out:
     if (wait_us != NULL) {

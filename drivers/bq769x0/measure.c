@@ -26,17 +26,19 @@ static uint32_t take_codes(bq769x0 *d, unsigned first, unsigned n)
     return sum;
 }
 
-/* Cells close up, whatever inputs carry them; another source of the temperatures leaves those alone. */
+/* Cells close up, whatever inputs carry them, and temperatures follow; another source of these leaves them
+ * alone. */
 static void keep_codes(bq769x0 *d)
 {
     const uint16_t *from = d->fresh;
     uint16_t *to = d->code;
-    for (unsigned in_use = d->known.in_use; in_use != 0u; in_use >>= 1) {
-        *to = *from++;
-        to += in_use & 1u;
-    }
+    unsigned kept = d->known.in_use;
     if (!d->temp_held) {
-        memcpy(&d->code[X0_TEMPS], &d->fresh[X0_TS], 3u * sizeof d->code[0]);
+        kept |= 7u << X0_TS;
+    }
+    for (; kept != 0u; kept >>= 1) {
+        *to = *from++;
+        to += kept & 1u;
     }
 }
 
@@ -53,10 +55,12 @@ static void take_picture(bq769x0 *d, uint32_t sum)
         keep_codes(d);
     }
     d->quality = (uint8_t)quality;
-    if (d->now_ms - d->temp_ms >= X0_TEMP_MS) {
+    if (d->temp_settled || d->now_ms - d->temp_ms >= X0_TEMP_MS) {
         d->temp_settled = true;
+        d->temp_quality = (uint8_t)quality;
+    } else {
+        d->temp_quality = BQ_Q_CHIP;
     }
-    d->temp_quality = (uint8_t)(d->temp_settled ? quality : BQ_Q_CHIP);
     d->balanced = d->balance;
     d->picture_ms = d->now_ms;
 }

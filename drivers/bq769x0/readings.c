@@ -25,7 +25,7 @@ void bq769x0_read_cell(const bq769x0 *d, unsigned cell, bq_cell_reading *c)
 
 void bq769x0_read_temp(const bq769x0 *d, unsigned sensor, bq_temp_reading *t)
 {
-    unsigned code = d->code[X0_TEMPS + sensor] & 0x3fffu, quality = d->temp_quality;
+    unsigned code = d->code[d->known.cells + sensor] & 0x3fffu, quality = d->temp_quality;
     bool works = d->known.sensor(d->known.sensor_ctx, (uint16_t)code, &t->dc);
     t->module = 0;
     if (quality == BQ_Q_VALID) {

@@ -21,12 +21,10 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
-/* where in d->fresh, behind the inputs: BAT, TS1.., the coulomb counter; and in d->code, behind the cells:
- * TS1.. */
+/* where in d->fresh, behind the inputs: BAT, TS1.., the coulomb counter */
 #define X0_BAT 15u
 #define X0_TS 16u
 #define X0_CC 19u
-#define X0_TEMPS 15u
 
 /* What a job waits for beside the point where it goes on: a transfer of `n` registers from `reg` on. */
 #define X0_CATCH 0x100 /* goes on whatever came of it: d->result tells */

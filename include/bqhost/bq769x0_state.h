@@ -112,7 +112,7 @@ typedef struct bq769x0 {
     bq769x0_config config;
     bq_gpio gpio;
     bq_i2c_segment segments[2];
-    uint16_t code[18];  /* of the last good picture: cells from the lowest on, [15] TS1.. */
+    uint16_t code[18];  /* of the last good picture: cells from the lowest on, behind them TS1..TS3 */
     uint16_t fresh[20]; /* as read: 15 inputs, BAT, TS1..TS3, coulomb counter */
     bq769x0_frame frames[BQ769X0_FRAMES + 1u];
     bq769x0_counting counting;

@@ -208,6 +208,73 @@ static void test_what_init_refuses(void)
     TEST_ASSERT_EQUAL_INT(BQ_E_STATE, bq769x0_begin_measure(&rig.d));
 }
 
+/* proves: X0-SEQ-05, X0-SEQ-38, X0-SEQ-43 */
+static void test_nothing_is_on_before_a_temperature_is_known(void)
+{
+    awake("bq7694003", 15);
+    (void)look();
+    TEST_ASSERT_EQUAL_HEX8(0, rig.cells[0].quality & BQ_Q_VALID); /* no picture yet */
+    TEST_ASSERT_FALSE(r.current_valid);
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, outputs(3, 0x0001));
+    loop(1000);
+    (void)look();
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, rig.cells[0].quality);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_CHIP, rig.temps[0].quality);
+    TEST_ASSERT_EQUAL_INT(BQ_E_STATE, outputs(3, 0x0001));
+    TEST_ASSERT_FALSE(sim_x0_chg(&rig.chip) || sim_x0_dsg(&rig.chip));
+    TEST_ASSERT_EQUAL_HEX16(0, sim_x0_cb(&rig.chip));
+    loop(1500);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, outputs(3, 0x0001));
+    TEST_ASSERT_TRUE(sim_x0_chg(&rig.chip) && sim_x0_dsg(&rig.chip));
+    TEST_ASSERT_EQUAL_HEX16(1, sim_x0_cb(&rig.chip));
+    rig_clean();
+}
+
+/* A part with eight cells as a constant: limits by the compiler, temperatures by codes. */
+static const bq769x0_known constant = {
+    BQ769X0_PART(10, 0x02f7u),
+    .address7 = 0x08,
+    .crc = true,
+    .registers = BQ769X0_REGISTERS(BQ769X0_THERMISTORS, BQ769X0_SHUNT_MV(75000, 1000), 320,
+                                   BQ769X0_SHUNT_MV(125000, 1000), 100, 2, 4),
+    .counter = BQ769X0_CTRL2_CC_EN,
+    .ov_mv = 4250,
+    .uv_mv = 2800,
+    .shunt_uohm = 1000,
+    .sensor = bq769x0_sensor_codes,
+    .sensor_ctx = &bq769x0_codes_103at};
+
+/* proves: X0-SEQ-15, X0-SEQ-22, X0-CELL-18, X0-CC-13 */
+static void test_a_part_that_is_a_constant(void)
+{
+    bq_i2c i2c;
+    bq_clock clock;
+    awake("bq7693003", 8);
+    i2c = hal_sim_x0_i2c(&rig.hal);
+    clock = hal_sim_x0_clock(&rig.hal);
+    bq769x0_init_known(&rig.d, &constant, &i2c, &clock);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, configure());
+    TEST_ASSERT_EQUAL_HEX8(0x8b, rig_reg(0x06));
+    TEST_ASSERT_EQUAL_HEX8(0x5a, rig_reg(0x07));
+    TEST_ASSERT_EQUAL_HEX8(0x50, rig_reg(0x08));
+    TEST_ASSERT_EQUAL_HEX8(0x18, rig_reg(0x04));
+    for (unsigned n = 0; n < 8u; n++) {
+        (void)sim_x0_set_cell(&rig.chip, (int)rig_input(n + 1u), 3.4 + 0.05 * n);
+    }
+    (void)sim_x0_set_sense(&rig.chip, -0.010);
+    loop(3000);
+    TEST_ASSERT_EQUAL_HEX8(0, look());
+    for (unsigned n = 0; n < 8u; n++) {
+        TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, rig.cells[n].quality);
+        TEST_ASSERT_UINT_WITHIN(1, 3400u + 50u * n, rig.cells[n].mv);
+    }
+    TEST_ASSERT_INT_WITHIN(2, 250, rig.temps[0].dc);
+    TEST_ASSERT_INT_WITHIN(2, 250, rig.temps[1].dc);
+    TEST_ASSERT_TRUE(r.current_valid);
+    TEST_ASSERT_INT_WITHIN(10, -10000, r.current_ma);
+    rig_clean();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -215,5 +282,7 @@ int main(void)
     RUN_TEST(test_a_fault_is_reported_kept_and_cleared_on_request);
     RUN_TEST(test_a_disturbed_and_a_dead_bus);
     RUN_TEST(test_what_init_refuses);
+    RUN_TEST(test_nothing_is_on_before_a_temperature_is_known);
+    RUN_TEST(test_a_part_that_is_a_constant);
     return UNITY_END();
 }
