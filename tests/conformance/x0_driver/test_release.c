@@ -209,7 +209,7 @@ static void test_the_first_look_waits_for_the_pin(void)
 /* proves: X0-SEQ-32, X0-LOAD-05 */
 static void test_looks_come_with_every_scan(void)
 {
-    uint64_t n, last = 0;
+    uint64_t n, cleared, last = 0;
     on_duty("bq7692003", 320);
     (void)sim_x0_set_chgpin(&b.chip, 3.0);
     strike(-0.150, 0.2);
@@ -221,6 +221,11 @@ static void test_looks_come_with_every_scan(void)
             TEST_ASSERT_TRUE(last == 0 || bench_log(n)->t_ns - last <= 300 * MS);
             last = bench_log(n)->t_ns;
         }
+    (void)sim_x0_set_chgpin(&b.chip, 0.0);
+    last = b.chip.now;
+    bench_serve(2000, 250);
+    cleared = written(&n, 0, 0x02);
+    TEST_ASSERT_TRUE(cleared != 0 && cleared <= last + 1250 * MS); /* four looks, and 250 ms of quiet */
     on_duty("bq7692003", 320);
     (void)sim_x0_set_cell(&b.chip, 1, 4.3);
     bench_serve(2500, 250);
