@@ -281,6 +281,29 @@ static void test_another_register_in_place_of_the_status(void)
     }
 }
 
+/* FETs that cannot be switched off on the bus are not passed over in silence. */
+/* proves: X0-SEQ-28, X0-FET-13 */
+static void test_a_fet_that_cannot_be_written_is_told(void)
+{
+    on_duty("bq7692003", 320);
+    (void)sim_x0_set_sense(&b.chip, -0.150);
+    bench_wait(0.2);
+    (void)sim_x0_set_sense(&b.chip, 0);
+    b.spoil_writes = true;
+    b.spoil_reg = 5;
+    b.spoil_seen = 0;
+    b.spoil_at = 1;
+    b.spoil_count = 100;
+    b.spoil_kind = SPOIL_NACK;
+    TEST_ASSERT_TRUE(bench_scan() < 0);
+    TEST_ASSERT_TRUE(sim_x0_chg(&b.chip)); /* the part has switched off DSG, CHG is the driver's */
+    b.spoil_at = 0;
+    bench_serve(500, 250);
+    TEST_ASSERT_FALSE(sim_x0_chg(&b.chip) || sim_x0_dsg(&b.chip));
+    TEST_ASSERT_EQUAL_HEX16(BQ_F_SHORT, b.module.faults);
+    TEST_ASSERT_TRUE(until_on(20000) < 20000);
+}
+
 /* No reading counts from the fault to a scan and 2 s after the configuration, also while the bit reads as
  * clear.
  */
@@ -374,6 +397,7 @@ int main(void)
     RUN_TEST(test_looks_come_with_every_scan);
     RUN_TEST(test_a_fault_during_a_probation_adds_to_it);
     RUN_TEST(test_another_register_in_place_of_the_status);
+    RUN_TEST(test_a_fet_that_cannot_be_written_is_told);
     RUN_TEST(test_an_internal_fault_ends_the_use_of_readings);
     RUN_TEST(test_unlocking_begins_anew);
     RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
