@@ -34,24 +34,19 @@ static uint32_t flush(bq_console *c)
     return 0;
 }
 
-/* The next byte of input, the one read ahead first. */
-static bool take(bq_console *c, uint8_t *byte)
+/* Whether there is a byte of input; then it is `held`. */
+static bool look_ahead(bq_console *c)
 {
-    if (c->has_held) {
-        *byte = c->held;
-        c->has_held = false;
-        return true;
+    if (!c->has_held) {
+        c->has_held = c->stream.ops->read(c->stream.ctx, &c->held, 1) == 1u;
     }
-    return c->stream.ops->read(c->stream.ctx, byte, 1) == 1u;
+    return c->has_held;
 }
 
 /* Ctrl-C ends a command; any other byte waits for its end. */
 static bool interrupted(bq_console *c)
 {
-    if (!c->has_held) {
-        c->has_held = c->stream.ops->read(c->stream.ctx, &c->held, 1) == 1u;
-    }
-    if (!c->has_held || c->held != CTRL_C) {
+    if (!look_ahead(c) || c->held != CTRL_C) {
         return false;
     }
     c->has_held = false;
@@ -92,12 +87,11 @@ static uint32_t run(bq_console *c, bq_console_target *t)
 
 static uint32_t listen(bq_console *c)
 {
-    uint8_t byte;
-
-    if (!take(c, &byte)) {
+    if (!look_ahead(c)) {
         return UINT32_MAX;
     }
-    if (console_edit(c, byte)) {
+    c->has_held = false;
+    if (console_edit(c, c->held)) {
         console_remember(c);
         c->row = 0;
         c->item = 0;
