@@ -75,24 +75,11 @@ static void look_at_modules(const bq_pack *p, bq_picture *v)
     }
 }
 
-static void take_sensor(bq_pack_summary *y, uint16_t number, int16_t dc)
+/* Whether cell or sensor i (from 0), that is `r`, may decide: a valid reading that is fresh, or the last good
+ * value of one that is not. What is not valid counts against its module. `seen` has a bit for each that has
+ * been valid once. */
+static bool decides(bq_pack *p, bq_picture *v, bool sensor, unsigned i, const bq_cell_reading *r)
 {
-    if (y->temp_max == 0u || dc > y->temp_max_dc) {
-        y->temp_max_dc = dc;
-        y->temp_max = (uint8_t)number;
-    }
-    if (y->temp_min == 0u || dc < y->temp_min_dc) {
-        y->temp_min_dc = dc;
-        y->temp_min = (uint8_t)number;
-    }
-}
-
-/* Whether cell or sensor i (from 0) may decide: a valid reading that is fresh, or the last good value of one
- * that is not. What is not valid counts against its module. `seen` has a bit for each that has been valid
- * once. */
-static bool decides(bq_pack *p, bq_picture *v, bool sensor, unsigned i)
-{
-    const bq_cell_reading *r = bq_reading(v->s, sensor, i);
     const uint32_t bit = (uint32_t)1u << (i % 32u), quality = r->quality;
     uint32_t *seen = &(sensor ? p->sensor_seen : p->cell_seen)[i / 32u];
     const unsigned m = r->module;
@@ -117,45 +104,47 @@ static bool decides(bq_pack *p, bq_picture *v, bool sensor, unsigned i)
            (v->module[m] & BQ_MODULE_DISCARDED) == 0u;
 }
 
-/* The longest loop of a step: what it collects stays in registers, and where nothing is wrong with any module
- * a valid cell simply counts. */
-static void look_at_cells(bq_pack *p, bq_picture *v)
+#define NUMBER 511u
+#if BQ_PACK_MAX_CELLS >= NUMBER || BQ_PACK_MAX_SENSORS >= NUMBER
+#error "a number does not fit beside its value"
+#endif
+
+/* Sum and extremes of what decides. The longest loop of a step: where nothing is wrong with any module a
+ * valid reading simply counts, and an extreme is one word, value << 9 | number from 1, of the highest with
+ * the number inverted, so that of equals the first one is taken. Temperatures are turned into unsigned
+ * values. */
+static void look_at_readings(bq_pack *p, bq_picture *v, bool sensor)
 {
     const bool untrusted = (v->any & (BQ_MODULE_OLD | BQ_MODULE_DISCARDED)) != 0u;
     const uint32_t plain = p->started && !untrusted ? BQ_Q_VALID : 0u;
+    const uint32_t count = sensor ? v->s->temp_count : v->s->cell_count, turn = sensor ? 0x8000u : 0u;
+    const bq_cell_reading *r = bq_reading(v->s, sensor, 0);
     bq_pack_summary *y = &p->summary;
-    const uint16_t count = v->s->cell_count;
-    const bq_cell_reading *c = v->s->cells;
-    uint32_t sum = 0, highest = 0, lowest = UINT32_MAX, at_highest = 0, at_lowest = 0;
+    uint32_t sum = 0, lowest = UINT32_MAX, highest = 0;
 
-    for (uint32_t i = 0; i < count; i++, c++) {
-        const uint32_t mv = c->mv;
-        if ((c->quality & plain) == 0u && !decides(p, v, false, i)) {
+    for (uint32_t i = 0; i < count; i++, r++) {
+        const uint32_t value = r->mv ^ turn, word = value << 9 | (i + 1u);
+        if ((r->quality & plain) == 0u && !decides(p, v, sensor, i, r)) {
             continue;
         }
-        sum += mv;
-        if (mv > highest || at_highest == 0u) {
-            highest = mv;
-            at_highest = i + 1u;
-        }
-        if (mv < lowest) {
-            lowest = mv;
-            at_lowest = i + 1u;
-        }
+        sum += value;
+        lowest = word < lowest ? word : lowest;
+        highest = (word ^ NUMBER) > highest ? word ^ NUMBER : highest;
     }
-    y->pack_mv = sum;
-    y->cell_max_mv = (uint16_t)highest;
-    y->cell_max = (uint16_t)at_highest;
-    y->cell_min_mv = at_lowest == 0u ? (uint16_t)0 : (uint16_t)lowest;
-    y->cell_min = (uint16_t)at_lowest;
-}
-
-static void look_at_sensors(bq_pack *p, bq_picture *v)
-{
-    for (uint16_t i = 0; i < v->s->temp_count; i++) {
-        if (decides(p, v, true, i)) {
-            take_sensor(&p->summary, (uint16_t)(i + 1u), v->s->temps[i].dc);
-        }
+    if (highest == 0u) {
+        return;
+    }
+    if (sensor) {
+        y->temp_min_dc = (int16_t)((int32_t)(lowest >> 9) - 0x8000);
+        y->temp_min = (uint8_t)(lowest & NUMBER);
+        y->temp_max_dc = (int16_t)((int32_t)(highest >> 9) - 0x8000);
+        y->temp_max = (uint8_t)(~highest & NUMBER);
+    } else {
+        y->pack_mv = sum;
+        y->cell_min_mv = (uint16_t)(lowest >> 9);
+        y->cell_min = (uint16_t)(lowest & NUMBER);
+        y->cell_max_mv = (uint16_t)(highest >> 9);
+        y->cell_max = (uint16_t)(~highest & NUMBER);
     }
 }
 
@@ -192,8 +181,8 @@ void bq_pack_look(bq_pack *p, const bq_sample *s, bq_picture *v)
     advance_ages(p, v);
     if (v->s != NULL) {
         look_at_modules(p, v);
-        look_at_cells(p, v);
-        look_at_sensors(p, v);
+        look_at_readings(p, v, false);
+        look_at_readings(p, v, true);
         v->current_known = s->current_valid &&
                            bq_pack_add_ms(s->current_age_ms, p->copy_age_ms) <= p->config.comm_timeout_ms;
     }
