@@ -28,6 +28,7 @@ static bool in_range(const bq769x0_config *c, unsigned groups)
 bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *k,
                       bq769x0_current_limits *current)
 {
+    static const uint32_t usual_v25_uv = BQ769X0_DIE_V25_UV;
     unsigned groups = c->inputs / 5u;
     uint8_t protect3;
     bq_status st;
@@ -52,7 +53,7 @@ bq_status x0_known_of(const bq769x0_config *c, unsigned in_use, bq769x0_known *k
     k->registers[BQ769X0_CC_CFG] = BQ769X0_CC_CFG_VALUE;
     k->registers[BQ769X0_SYS_CTRL1] = BQ769X0_DIE;
     k->sensor = bq769x0_sensor_die;
-    k->sensor_ctx = &c->die_v25_uv;
+    k->sensor_ctx = c->die_v25_uv != 0u ? &c->die_v25_uv : &usual_v25_uv;
     if (c->sensors != 0u) {
         k->registers[BQ769X0_SYS_CTRL1] = BQ769X0_THERMISTORS;
         k->sensor = c->sensor;

@@ -101,12 +101,15 @@ int x0_job_scan(bq769x0 *d, bq769x0_frame *f)
     SEQ_RUN_CALL(1, x0_job_measure);
     f->x = (uint8_t)-d->result;
     if (f->x != 0u) {
-        d->faults = BQ_F_COMM;
-    } else if (!d->no_data) {
-        judge_picture(d);
-    }
-    if (f->x == 0u && x0_valid(d)) {
-        x0_bump(&d->stats.scans);
+        d->faults =
+            d->quality == BQ_Q_COMM ? BQ_F_COMM : 0u; /* not for a picture that only was not acknowledged */
+    } else {
+        if (!d->no_data) {
+            judge_picture(d);
+        }
+        if (x0_valid(d)) {
+            x0_bump(&d->stats.scans);
+        }
     }
     if (blind(d)) {
         d->faults |= f->x == 0u ? BQ_F_LOCKUP : 0u;

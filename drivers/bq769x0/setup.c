@@ -66,7 +66,7 @@ bq_status bq769x0_init(bq769x0 *d, const bq769x0_config *config, const bq_i2c *i
     bq769x0_init_known(d, &known, i2c, clock);
     d->config = *config;
     if (config->die_v25_uv == 0u) {
-        d->config.die_v25_uv = 1200000u;
+        d->config.die_v25_uv = BQ769X0_DIE_V25_UV;
     }
     if (config->sensors == 0u) {
         d->known.sensor_ctx = &d->config.die_v25_uv;

@@ -83,56 +83,80 @@ bool x0_holds(bq769x0 *d, unsigned reg, unsigned n)
     return true;
 }
 
-/* Every try begins with the pointer (X0-SEQ-48): the part's own has moved on. After silence 1 ms passes,
- * after anything that may be a stuck bus its recovery; a silent part is asked once more after that
- * (X0-SEQ-51, X0-SEQ-52). A clearing of SYS_STAT is repeated only for what still reads as set, so that an
- * event that came in between is not cleared unseen (X0-SEQ-50, X0-BIT-09). */
+/* What follows from a transaction that went well: BQ_OK, that was all; BQ_PENDING, another one; or how the
+ * transfer ends. What is checked is read back, and written again where it differs, three times (X0-SEQ-16).
+ */
+static int follow(bq769x0 *d, bq769x0_frame *f)
+{
+    bool reading = (f->op & X0_READ) != 0;
+    if (reading) {
+        d->answer = *x0_data(d);
+    }
+    if ((f->op & X0_CHECK) == 0 || (reading && x0_holds(d, d->bus[1], (unsigned)f->op >> 24))) {
+        return BQ_OK;
+    }
+    if (reading) {
+        x0_bump(&d->stats.write_errors);
+        if (++f->x == X0_TRIES) {
+            return BQ_E_VERIFY;
+        }
+    }
+    f->op ^= X0_READ;
+    f->tries = 0;
+    return BQ_PENDING;
+}
+
+/* After one that failed: whether it is repeated. After anything that may be a stuck bus comes its recovery; a
+ * silent part is asked once more after that (X0-SEQ-51, X0-SEQ-52). */
+static bool again(bq769x0 *d, bq769x0_frame *f, int st)
+{
+    unsigned silent = 0;
+    uint32_t *counter = &d->stats.bus_errors;
+    switch (st) {
+    case BQ_E_NACK:
+        silent = 1;
+        counter = &d->stats.no_answers;
+        break;
+    case BQ_E_CRC:
+        counter = &d->stats.crc_errors;
+        break;
+    default:
+        break;
+    }
+    x0_bump(counter);
+    if (++f->tries >= X0_TRIES + silent || (f->op & X0_ONCE) != 0) {
+        return false;
+    }
+    x0_bump(&d->stats.retries);
+    if (st != BQ_E_CRC && (silent == 0u || f->tries >= X0_TRIES)) {
+        x0_recover(d);
+    }
+    return true;
+}
+
+/* Every try begins with the pointer (X0-SEQ-48): the part's own has moved on; 1 ms lies between two. A
+ * clearing of SYS_STAT is repeated only for what still reads as set, so that an event that came in between is
+ * not cleared unseen (X0-SEQ-50, X0-BIT-09). */
 int x0_job_transfer(bq769x0 *d, bq769x0_frame *f)
 {
+    int st;
     SEQ_BEGIN(f)
     for (;;) {
-        int st;
-        unsigned silent;
-        uint32_t *counter;
         send(d, (unsigned)f->op);
         SEQ_TRY(1, 0);
         st = d->transfer;
-        counter = &d->stats.bus_errors;
         if (st == BQ_OK && (f->op & X0_READ) != 0 && !walk(d, true, (unsigned)f->op >> 24)) {
             st = BQ_E_CRC;
-            counter = &d->stats.crc_errors;
         }
         if (st == BQ_OK) {
-            if ((f->op & X0_READ) != 0) {
-                d->answer = *x0_data(d);
+            st = follow(d, f);
+            if (st == BQ_PENDING) {
+                continue;
             }
-            if ((f->op & X0_CHECK) == 0) {
-                return BQ_OK;
-            }
-            if ((f->op & X0_READ) != 0) {
-                if (x0_holds(d, d->bus[1], (unsigned)f->op >> 24)) {
-                    return BQ_OK;
-                }
-                x0_bump(&d->stats.write_errors);
-                if (++f->x == X0_TRIES) {
-                    return BQ_E_VERIFY;
-                }
-            }
-            f->op ^= X0_READ;
-            f->tries = 0;
-            continue;
-        }
-        silent = st == BQ_E_NACK;
-        if (silent != 0u) {
-            counter = &d->stats.no_answers;
-        }
-        x0_bump(counter);
-        if (++f->tries >= X0_TRIES + silent || (f->op & X0_ONCE) != 0) {
             return st;
         }
-        x0_bump(&d->stats.retries);
-        if (st != BQ_E_CRC && (silent == 0u || f->tries >= X0_TRIES)) {
-            x0_recover(d);
+        if (!again(d, f, st)) {
+            return st;
         }
         SEQ_TRY(2, x0_wait(d, 1000u));
         if ((f->op & X0_READ) == 0) {

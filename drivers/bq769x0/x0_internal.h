@@ -17,7 +17,6 @@
 enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 
 #define X0_TRIES 3u
-#define X0_ROUNDS 4u
 #define X0_SCAN_MS 250u
 #define X0_SCRUB_MS 1000u
 #define X0_TEMP_MS 2250u /* until a temperature is of the source selected now (X0-SEQ-43) */
@@ -30,12 +29,10 @@ enum { X0_STATE_NONE, X0_STATE_SHIP, X0_STATE_READY };
 #define X0_CATCH 0x100 /* goes on whatever came of it: d->result tells */
 #define X0_READ 0x200
 #define X0_CHECK 0x400 /* written, read back, compared */
-#define X0_TWICE 0x800 /* a read of one or two registers is repeated until two running agree */
-#define X0_ONCE 0x1000 /* one try only */
+#define X0_ONCE 0x800  /* one try only */
 #define X0_PUT(reg, n) ((int)((unsigned)(n) << 24 | (reg) << 16))
 #define X0_FETCH(reg, n) (X0_PUT(reg, n) | X0_READ)
 #define X0_SET(reg, n) (X0_PUT(reg, n) | X0_CHECK)
-#define X0_AGREE(reg, n) (X0_FETCH(reg, n) | X0_TWICE)
 #define X0_FETCH_STAT X0_FETCH(BQ769X0_SYS_STAT, 1)
 #define X0_SET_CTRL2 X0_SET(BQ769X0_SYS_CTRL2, 1)
 #define X0_SET_SWITCHES(d) X0_SET(BQ769X0_CELLBAL1, (d)->known.groups)
@@ -68,7 +65,7 @@ void x0_pause(bq769x0 *d, uint32_t us);
 void x0_tick(bq769x0 *d);
 void x0_bump(uint32_t *counter);
 
-/* transfer.c: reads arrive in x0_data(), what is written lies in d->want. */
+/* transfer.c: reads arrive in x0_data(), what is written lies in d->known.registers. */
 bool x0_holds(bq769x0 *d, unsigned reg, unsigned n);
 void x0_recover(bq769x0 *d);
 int x0_job_transfer(bq769x0 *d, bq769x0_frame *f);

@@ -220,11 +220,12 @@ extern const bq_field_table bq769x0_config_fields;
 
 /** Sets up the instance for a part that is known (bq769x0_known.h). `known`, `i2c` and `clock` are copied;
  * what they point to must outlive the instance. Touches no bus. Nothing is checked here: what the macros of
- * bq769x0_known.h made was checked by the compiler. No pointer is null. */
+ * bq769x0_known.h made was checked by the compiler. No pointer is null. What is not in this set needs
+ * bq769x0_init(). */
 void bq769x0_init_known(bq769x0 *d, const bq769x0_known *known, const bq_i2c *i2c, const bq_clock *clock);
 /** Describes a part by a configuration in physical units, for limits that the compiler does not know.
  * `inputs` is 5, 10 or 15; address, CRC option and wiring are given and true; with sensors = 0 `config` must
- * outlive the instance and hold die_v25_uv. BQ_OK; BQ_E_CELLS, BQ_E_RANGE (shunt, sensors), BQ_E_NO_CODE,
+ * outlive the instance. BQ_OK; BQ_E_CELLS, BQ_E_RANGE (shunt, sensors), BQ_E_NO_CODE,
  * BQ_E_CONFIG as bq769x0_init(), and `*known` is then as before. Not used: recovery thresholds, settle time,
  * frozen_scans, balance_timer_s, balance_max, balance_across_groups, keep_fets, the other die_.... */
 bq_status bq769x0_known_of(const bq769x0_config *config, bq769x0_known *known);

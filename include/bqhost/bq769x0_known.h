@@ -52,7 +52,9 @@ extern const bq769x0_code_table bq769x0_codes_103at;
 /** `thermistor` is a bq_thermistor (thermistor.h), which serves other monitors too: by way of the resistance.
  */
 bool bq769x0_sensor_thermistor(const void *thermistor, uint16_t code, int16_t *dc);
-/** The die (X0-DIE-02), for SYS_CTRL1 without TEMP_SEL; `v25_uv` is a uint32_t: 1200000, or as measured in
+/** Voltage of the die's sensor at 25 degrees C where nobody measured it. */
+#define BQ769X0_DIE_V25_UV 1200000u
+/** The die (X0-DIE-02), for BQ769X0_DIE; `v25_uv` is a uint32_t: BQ769X0_DIE_V25_UV, or as measured in
  * production. Always true. */
 bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
 

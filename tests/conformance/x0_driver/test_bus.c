@@ -277,6 +277,28 @@ static void test_a_lost_answer_to_a_clear(void)
         }
 }
 
+/* What was read before is a picture all the same. */
+/* proves: X0-SEQ-21, X0-SEQ-51 */
+static void test_a_result_that_cannot_be_cleared(void)
+{
+    bench_up("bq7694003");
+    bench_serve(3000, 250);
+    b.spoil_writes = true;
+    b.spoil_reg = 0x00;
+    b.spoil_seen = 0;
+    b.spoil_at = 1;
+    b.spoil_count = 1000000;
+    b.spoil_kind = SPOIL_NACK;
+    bench_wait(260);
+    TEST_ASSERT_EQUAL(BQ_E_NACK, bench_scan());
+    TEST_ASSERT_EQUAL_UINT(4, b.spoil_seen); /* three tries, and one after the recovery of the bus */
+    TEST_ASSERT_EQUAL_HEX16(0, b.module.faults);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, b.cells[0].quality);
+    TEST_ASSERT_TRUE(b.sample.current_valid);
+    b.spoil_at = 0;
+    TEST_ASSERT_EQUAL(BQ_OK, bench_scan());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -288,5 +310,6 @@ int main(void)
     RUN_TEST(test_a_back_end_that_never_ends_is_given_up);
     RUN_TEST(test_the_address_changes);
     RUN_TEST(test_a_lost_answer_to_a_clear);
+    RUN_TEST(test_a_result_that_cannot_be_cleared);
     return UNITY_END();
 }

@@ -230,6 +230,23 @@ static void test_nothing_is_on_before_a_temperature_is_known(void)
     rig_clean();
 }
 
+/* proves: X0-DIE-02, X0-SEQ-17 */
+static void test_the_die_as_the_source(void)
+{
+    awake("bq7692003", 5);
+    rig.config.sensors = 0;
+    rig.config.sensor = NULL;
+    TEST_ASSERT_EQUAL_INT(BQ_OK, init_known());
+    (void)sim_x0_set_tdie(&rig.chip, 40.0);
+    TEST_ASSERT_EQUAL_INT(BQ_OK, configure());
+    TEST_ASSERT_EQUAL_HEX8(0x10, rig_reg(0x04));
+    loop(3000);
+    bq769x0_read_temp(&rig.d, 0, &rig.temps[0]);
+    TEST_ASSERT_EQUAL_HEX8(BQ_Q_VALID, rig.temps[0].quality);
+    TEST_ASSERT_INT_WITHIN(3, 400, rig.temps[0].dc);
+    rig_clean();
+}
+
 /* A part with eight cells as a constant: limits by the compiler, temperatures by codes. */
 static const bq769x0_known constant = {
     BQ769X0_PART(10, 0x02f7u),
@@ -283,6 +300,7 @@ int main(void)
     RUN_TEST(test_a_disturbed_and_a_dead_bus);
     RUN_TEST(test_what_init_refuses);
     RUN_TEST(test_nothing_is_on_before_a_temperature_is_known);
+    RUN_TEST(test_the_die_as_the_source);
     RUN_TEST(test_a_part_that_is_a_constant);
     return UNITY_END();
 }
