@@ -141,7 +141,7 @@ static int job_find(bq769x0 *d, bq769x0_frame *f)
 static unsigned carrying(const bq769x0 *d)
 {
     unsigned inputs = 0;
-    for (unsigned i = 0; i < d->config.inputs; i++) {
+    for (unsigned i = 0; i < BQ769X0_INPUTS; i++) {
         inputs |= (d->fresh[i] >= BQ769X0_UV_MINQUAL ? 1u : 0u) << i;
     }
     return inputs;
