@@ -49,7 +49,7 @@ static uint32_t quiet_ms(const bq769x0 *d)
     const bq769x0_trouble *t = &d->trouble;
     uint32_t ms = (d->held & (BQ769X0_STAT_OV | BQ769X0_STAT_UV)) != 0u ? 2000u : 0u;
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
-        return 3000u << t->strikes;
+        return 3000u << (t->breakdowns - 1u);
     }
     if ((d->held & OVERCURRENT) != 0u) {
         ms = longer(ms, 250u << t->strikes);
@@ -86,9 +86,12 @@ static void take_event(bq769x0 *d, uint8_t set, bool back)
     bq769x0_trouble *t = &d->trouble;
     t->again = back || (d->held == 0u && t->released && d->now_ms - t->event_ms < 10000u);
     if (!t->again && d->held == 0u) {
-        t->strikes = 0;
-    } else if (t->again && t->strikes < STRIKES_MAX && (set & (OVERCURRENT | BQ769X0_STAT_XREADY)) != 0u) {
+        t->strikes = t->breakdowns = 0;
+    } else if (t->again && t->strikes < STRIKES_MAX && (set & OVERCURRENT) != 0u) {
         t->strikes++;
+    }
+    if ((set & BQ769X0_STAT_XREADY) != 0u) {
+        t->breakdowns++; /* the fourth ends in SHIP */
     }
     t->locked = t->locked || ((set & BQ769X0_STAT_SCD) != 0u && t->strikes >= STRIKES_MAX);
     t->event_ms = t->held_ms = d->now_ms;
@@ -137,7 +140,7 @@ int x0_job_service(bq769x0 *d, bq769x0_frame *f)
     }
     if ((d->held & BQ769X0_STAT_XREADY) != 0u) {
         x0_invalidate(d, BQ_Q_CHIP); /* X0-XRDY-04 */
-        if (t->strikes > 2u) {
+        if (t->breakdowns > 3u) {
             d->faults |= BQ_F_DEFECTIVE;
             SEQ_RUN(3, x0_job_ship);
             return BQ_E_DEFECTIVE; /* another start boots it again */

@@ -32,12 +32,13 @@ typedef struct bq769x0_trouble {
     uint32_t held_ms;  /* since when the release condition holds, or when the probation began */
     uint32_t event_ms; /* when the last fault bit appeared, or when it was released */
     uint32_t load_ms;
-    uint8_t loads;   /* LOAD_PRESENT = 0 in a row */
-    uint8_t strikes; /* fault events in a row */
-    bool probation;  /* fault bits were cleared and must stay clear for a while */
-    bool locked;     /* too many short circuits */
-    bool again;      /* the present fault came back */
-    bool released;   /* event_ms is the time of a release */
+    uint8_t loads;      /* LOAD_PRESENT = 0 in a row */
+    uint8_t strikes;    /* overcurrents in a row */
+    uint8_t breakdowns; /* internal faults in a row */
+    bool probation;     /* fault bits were cleared and must stay clear for a while */
+    bool locked;        /* too many short circuits */
+    bool again;         /* the present fault came back */
+    bool released;      /* event_ms is the time of a release */
 } bq769x0_trouble;
 
 /* Pictures that do not come, a converter that stands. */

@@ -385,6 +385,27 @@ static void test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again(void
     NO_MISUSE();
 }
 
+/* Short circuits pull the supply down: an internal fault after many of them is still the first of its kind,
+ * and gets its 3 s and its two repetitions before the part is given up. */
+/* proves: X0-SEQ-35 */
+static void test_an_internal_fault_after_short_circuits_is_the_first_of_its_kind(void)
+{
+    uint64_t n, struck, cleared;
+    on_duty("bq7692003", 320);
+    for (int k = 0; k < 4; k++) {
+        strike(-0.150, 0.2);
+        TEST_ASSERT_TRUE(until_on(20000) < 20000);
+    }
+    n = b.count;
+    struck = b.chip.now;
+    (void)sim_x0_strike_xready(&b.chip);
+    TEST_ASSERT_TRUE(until_on(20000) < 20000);
+    TEST_ASSERT_EQUAL(SIM_X0_NORMAL, b.chip.mode);
+    cleared = written(&n, 0, 0x20);
+    TEST_ASSERT_TRUE(cleared >= struck + 3000 * MS && cleared <= struck + (3000 + 4 * PERIOD) * MS);
+    NO_MISUSE();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -403,5 +424,6 @@ int main(void)
     RUN_TEST(test_a_short_circuit_within_ten_seconds_waits_longer);
     RUN_TEST(test_overcurrents_never_lock);
     RUN_TEST(test_after_ten_quiet_seconds_a_short_circuit_is_the_first_again);
+    RUN_TEST(test_an_internal_fault_after_short_circuits_is_the_first_of_its_kind);
     return UNITY_END();
 }
