@@ -42,6 +42,9 @@ bq_status bq769x0_begin_apply(bq769x0 *d, const bq_action *action)
         d->asked = (uint16_t)(action->balance[0] & ((1u << d->known.cells) - 1u));
         d->top->word = d->die_hot ? 0u : choose(d);
         d->served_ms = d->now_ms;
+        if (action->unlock) {
+            bq769x0_unlock(d);
+        }
     }
     return st;
 }

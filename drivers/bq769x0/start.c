@@ -198,8 +198,10 @@ int x0_job_start(bq769x0 *d, bq769x0_frame *f)
     SEQ_BEGIN(f)
     d->state = X0_STATE_NONE;
     x0_invalidate(d, BQ_Q_CHIP);
-    d->measured = d->watch.fresh_boot = d->trouble.probation = d->trouble.locked = false;
-    d->stat = d->held = d->trouble.strikes = d->trouble.breakdowns = 0;
+    d->measured = d->watch.fresh_boot = d->trouble.probation = false;
+    d->stat = d->trouble.strikes = d->trouble.breakdowns = 0;
+    d->held =
+        d->trouble.locked ? BQ769X0_STAT_SCD : 0u; /* another start is nobody's intervention (X0-SEQ-32) */
     d->faults = 0;
     x0_balance(d, 0);
     x0_die_reset(d);

@@ -203,7 +203,8 @@ bool bq769x0_alert_pending(const bq769x0 *d);
  * BQ_E_STALE: not seen yet, or what was read cannot be a temperature (balancing is then off too). */
 bq_status bq769x0_get_die(const bq769x0 *d, int16_t *dc, uint32_t *age_ms);
 
-/** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). */
+/** Ends the lock after five short circuits in a row: a person or a charger has intervened (X0-SEQ-32). An
+ * action with `unlock` does the same. Another start does not end it: FETs stay off after it. */
 void bq769x0_unlock(bq769x0 *d);
 
 /** The fields of bq769x0_config that a record of the settings holds (settings.h): all but the pointers. */

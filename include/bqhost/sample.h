@@ -98,6 +98,7 @@ typedef struct bq_action {
     bool discharge_on; /**< discharging path may conduct */
     bool clear_faults; /**< chip faults seen in the sample have been acted on and may be cleared */
     bool sleep;        /**< put the monitors to sleep (bq_afe_ops.sleep; apply does not look at it) */
+    bool unlock;       /**< a person has intervened, the request is off: what waits for that may go on */
     uint32_t balance[BQ_MASK_WORDS]; /**< bit (n-1) % 32 of word (n-1) / 32 = bleed cell n */
 } bq_action;
 

@@ -130,6 +130,7 @@ static void decide_outputs(bq_pack *p, const bq_pack_input *in, bq_action *a)
     a->charge_on = (p->drives & BQ_DRIVES_CHARGE) != 0u;
     a->discharge_on = (p->drives & BQ_DRIVES_DISCHARGE) != 0u;
     a->sleep = p->state == BQ_PACK_SLEEP;
+    a->unlock = in->request == BQ_REQUEST_OFF;
 }
 
 static void update_soc(bq_pack *p, const bq_picture *v)

@@ -45,10 +45,12 @@ static void test_the_way_up_takes_every_state_in_turn(void)
     rig_scan(&r);
     TEST_ASSERT_EQUAL(BQ_PACK_ON, r.p.state);
     TEST_ASSERT_TRUE(r.a.charge_on && r.a.discharge_on);
+    TEST_ASSERT_FALSE(r.a.unlock);
     TEST_ASSERT_EQUAL(r.now_ms, r.p.state_ms);
     r.in.request = BQ_REQUEST_OFF;
     rig_scan(&r);
     TEST_ASSERT_EQUAL(BQ_PACK_STANDBY, r.p.state);
+    TEST_ASSERT_TRUE(r.a.unlock); /* a person has intervened */
     off();
 }
 
