@@ -6,7 +6,9 @@
     tools/stack.py --image FOLDER [--targets FILE] [--board FILE] [--top N] [--limit BYTES]
 
 Without sources, all of src/ and drivers/bq*/ is compiled with -Os. With --image nothing is compiled: FOLDER is where an
-image was built with the call graphs of everything in it, and every function that nobody calls is an entry. Exit status 1, with a line PROBLEM for each, on
+image was built with the call graphs of everything in it, and every function that nobody calls is an entry.
+
+Exit status 1, with a line PROBLEM for each, on
     recursion (direct, or through a table of functions),
     a frame whose size is not known when compiling (alloca, variable arrays),
     a call through a pointer that the target file does not declare,
@@ -53,7 +55,7 @@ def readable(path):
 class Graph:
     def __init__(self, targets, board=None):
         self.frame, self.dynamic, self.edges, self.calls, self.problems = {}, set(), {}, {}, set()
-        self.targets, self.board, self.depths = targets, board, {}
+        self.targets, self.board, self.depths, self.same = targets, board, {}, {}
 
     def read(self, ci):
         for line in ci.read_text().split("\n"):
@@ -74,6 +76,13 @@ class Graph:
     def lines(self, path):
         return pathlib.Path(path).read_text().split("\n")
 
+    def merge(self, elf):
+        """Functions that the compiler found to be the same are names of one address; the graph holds one of them."""
+        told = subprocess.run(["arm-none-eabi-nm", str(elf)], capture_output=True, text=True, check=True).stdout
+        places = {name: at for at, name in re.findall(r"^(\w+) \S (\S+)$", told, re.M)}
+        known = {places[short(title)]: title for title in self.frame if short(title) in places}
+        self.same = {name: known[at] for name, at in places.items() if at in known}
+
     def declared(self, caller, path, member, line):
         """Titles that a call through a pointer may reach."""
         for rule in self.targets:
@@ -82,6 +91,7 @@ class Graph:
                 if self.board is not None and "board" in rule:
                     wanted += self.board.get(member, [])
                 found = [title for title in self.frame if plain(title) in wanted]
+                found += [self.same[name] for name in wanted if name in self.same]
                 for name in set(wanted) - {plain(title) for title in found} if self.board is None else ():
                     self.problems.add(f"target {name} of {path} {member} does not exist")
                 return found
@@ -89,7 +99,7 @@ class Graph:
         return []
 
     def callees(self, title):
-        found = set(self.edges.get(title, ()))
+        found = {callee if callee in self.frame else self.same.get(short(callee), callee) for callee in self.edges.get(title, ())}
         for path, member, line in self.calls.get(title, ()):
             found.update(self.declared(title, path, member, line))
         return sorted(found)
@@ -163,6 +173,8 @@ def main():
     if options.image:
         for ci in sorted(options.image.rglob("*.ci")):
             graph.read(ci)
+        for elf in options.image.glob("*.elf"):
+            graph.merge(elf)
     else:
         compile_graph(options, graph)
     entries = graph.entries(options.image is not None)
