@@ -74,7 +74,7 @@ void board_peripherals(void)
 
 void board_offer(bq_board *b)
 {
-    b->nvm = stm32_nvm_memory(&settings);
+    b->nvm = stm32_nvm_reader(&settings);
     b->can = stm32_can_listen(&board_hw.inbox, &board_hw.time);
     b->ammeter = stm32_adc_ammeter(&board_hw.adc);
 }
