@@ -48,8 +48,8 @@ typedef struct bq_app_config {
     uint16_t precharge_ms;     /**< how long the precharge path is closed alone before the contactor closes,
                                    1..10000; 0 = the contactor closes directly. Needs bq_app_use_precharge() */
     uint32_t precharge_end_ma; /**< current in either direction that may flow at the end of that time: more,
-                                   or an unknown current, is no charged load and the contactor stays open; 0
-                                   = not looked at; 0 while precharge_ms is 0 */
+                                   or none measured after the first half of it, is no charged load and the
+                                   contactor stays open; 0 = not looked at; 0 while precharge_ms is 0 */
     bq_pack_config pack;
 } bq_app_config;
 
@@ -68,7 +68,8 @@ typedef struct bq_app_counters {
     uint32_t self_test_failures;
     uint32_t line_failures;      /**< contactor or feedback accesses that failed */
     uint32_t ammeter_failures;   /**< ammeter readings that failed, BQ_E_STALE excepted */
-    uint32_t precharge_failures; /**< precharge times that ended with too much or an unknown current */
+    uint32_t precharge_failures; /**< precharge times that ended with too much or an unknown current, or did
+                                      not end */
 } bq_app_counters;
 
 typedef enum bq_app_job {
@@ -148,11 +149,12 @@ uint32_t bq_app_step(bq_app *app);
  * Tells that the board has a precharge path on BQ_LINE_PRECHARGE; to be called once after bq_app_init(). From
  * then on, with precharge_ms in the configuration, closing means: the path closes, precharge_ms later
  * (rounded up to a control period) the contactor closes if the current is then no more than precharge_end_ma,
- * and BQ_PACK_MISMATCH_MS after that the path opens. Opening opens both, whatever was under way. A load that
- * does not charge, and a path that cannot be switched, count as a contactor that does not follow: it stays
- * open, the path opens, and the fault "contactor" is latched until the request is off. A monitor that can no
- * longer be controlled meanwhile leaves the path closed for comm_timeout_ms + 2.5 x period_ms at most: its
- * resistor must bear that.
+ * and in the first pack step BQ_PACK_MISMATCH_MS after that the path opens. Opening opens both, whatever was
+ * under way. A load that does not charge, and a path that cannot be switched, count as a contactor that does
+ * not follow: it stays open, the path opens, and the fault "contactor" is latched until the request is off.
+ * Whatever the monitor does or does not do, the path is closed alone for precharge_ms + comm_timeout_ms +
+ * 1.25 x period_ms at most: its resistor must bear that. A path that never conducts is not noticed: no
+ * current flows through it either.
  * Without this call a configuration with precharge_ms never closes the contactor, which is that fault too.
  * `app` must not be NULL.
  */
@@ -198,8 +200,8 @@ const bq_pack *bq_app_pack(const bq_app *app);
 const bq_action *bq_app_action(const bq_app *app);
 const bq_app_counters *bq_app_get_counters(const bq_app *app);
 
-/** Level last written to the contactor line (or that would be, on a board without it): charging and
- *  discharging both allowed. */
+/** Level last wanted of the contactor line (also on a board without it): charging and discharging both
+ *  allowed. A line that could not be written high counts as low until it could. */
 bool bq_app_outputs_on(const bq_app *app);
 
 /** Milliseconds since init: the 32-bit microsecond clock extended in software. It is the `now_ms` of the pack

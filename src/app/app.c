@@ -209,7 +209,7 @@ static void write_outputs(bq_app *app)
 {
     if (!(app->action.charge_on && app->action.discharge_on)) {
         (void)bq_app_write_contactor(app, false);
-    } else if (app->line_on) {
+    } else if (app->line_on || bq_app_precharge_overdue(app)) {
         (void)bq_app_write_contactor(app, true);
     }
     app->apply_due = app->input.monitor == BQ_MONITOR_UP;
@@ -237,9 +237,9 @@ static void step_pack(bq_app *app)
     write_outputs(app);
 }
 
-static bool step_due(const bq_app *app)
+bool bq_app_step_due(const bq_app *app)
 {
-    return app->scan_ended || app->step_now || app->last_us - app->step_us >= latest_us(app);
+    return app->copied || app->scan_ended || app->step_now || app->last_us - app->step_us >= latest_us(app);
 }
 
 static uint32_t smaller(uint32_t a, uint32_t b)
@@ -278,7 +278,7 @@ uint32_t bq_app_step(bq_app *app)
         step_pack(app);
         return 0;
     }
-    if (step_due(app)) {
+    if (bq_app_step_due(app)) {
         prepare_step(app);
         return 0;
     }

@@ -16,5 +16,9 @@ bool bq_app_paused(const bq_app *app, uint32_t *left_us); /* a failed job may no
 bq_status bq_app_write_contactor(bq_app *app, bool on); /* BQ_E_UNSUPPORTED counts as BQ_OK */
 void bq_app_watch_contactor(bq_app *app);
 uint32_t bq_app_mismatch_ms(const bq_app *app);
+bool bq_app_precharge_overdue(const bq_app *app); /* the path is closed alone for longer than it may be */
+
+/* app.c */
+bool bq_app_step_due(const bq_app *app);
 
 #endif

@@ -26,21 +26,25 @@ bq_status bq_app_write_contactor(bq_app *app, bool on)
 {
     bq_status status = precharge(app, on), line;
 
-    if (status == BQ_PENDING) {
-        return BQ_OK;
-    }
     on = on && (status == BQ_OK || app->line_on);
     line = write_line(app, on);
-    status = status == BQ_OK ? line : status;
+    status = status == BQ_OK || status == BQ_PENDING ? line : status;
     app->line_failed = status != BQ_OK;
     if (app->line_failed) {
         bq_app_count(&app->counters.line_failures);
     }
-    if (app->line_on != on) {
+    if (app->line_on != on && (!on || line == BQ_OK)) { /* one that could not be closed is still open */
         app->line_on = on;
+        app->precharge_ms = app->now_ms;
         app->mismatch = false; /* the contact has its time to follow the new command */
     }
     return status;
+}
+
+bool bq_app_precharge_overdue(const bq_app *app)
+{
+    return app->precharging && !app->line_on &&
+           app->now_ms - app->precharge_ms > app->config.precharge_ms + app->config.pack.comm_timeout_ms;
 }
 
 /* A feedback that cannot be read contradicts every command. */

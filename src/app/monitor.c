@@ -67,7 +67,8 @@ static void scan_ended(bq_app *app, bq_status status)
     }
 }
 
-/* Closing waits for the monitor to have carried out the action; opening was done before. */
+/* Closing waits for the monitor to have carried out the action, and for a step that is due, which may want
+ * another one; opening was done before. */
 static void apply_ended(bq_app *app, bq_status status)
 {
     app->input.apply_status = status;
@@ -75,7 +76,7 @@ static void apply_ended(bq_app *app, bq_status status)
         bq_app_count(&app->counters.apply_failures);
         return;
     }
-    if (app->action.charge_on && app->action.discharge_on && !app->apply_due && !app->step_now) {
+    if (app->action.charge_on && app->action.discharge_on && !app->apply_due && !bq_app_step_due(app)) {
         (void)bq_app_write_contactor(app, true);
     }
 }

@@ -16,14 +16,17 @@ static bq_status drive(bq_app *app, bool on)
     return status;
 }
 
-/* By a current that was measured meanwhile. */
+/* By a current that was measured since the first half of the time was over. */
 static bool charged(const bq_app *app, uint32_t passed_ms)
 {
     const bq_sample *s = &app->sample;
     const uint32_t ma = s->current_ma < 0 ? 0u - (uint32_t)s->current_ma : (uint32_t)s->current_ma;
+    const uint32_t room_ms = passed_ms - app->config.precharge_ms / 2u;
+    const uint32_t copy_ms = app->now_ms - app->copied_ms;
 
     return app->config.precharge_end_ma == 0u ||
-           (s->current_valid && s->current_age_ms < passed_ms && ma <= app->config.precharge_end_ma);
+           (s->current_valid && copy_ms < room_ms && s->current_age_ms < room_ms - copy_ms &&
+            ma <= app->config.precharge_end_ma);
 }
 
 static bq_status begin(bq_app *app)
@@ -34,13 +37,24 @@ static bq_status begin(bq_app *app)
     return status == BQ_OK ? BQ_PENDING : status;
 }
 
+/* Until it is no longer requested. */
+static bq_status refuse(bq_app *app)
+{
+    if (!app->precharge_failed) {
+        app->precharge_failed = true;
+        bq_app_count(&app->counters.precharge_failures);
+    }
+    (void)drive(app, false);
+    return BQ_E_STATE;
+}
+
 /* The contactor is open and shall close. */
 static bq_status close_path(bq_app *app)
 {
     const uint32_t passed_ms = app->now_ms - app->precharge_ms;
 
-    if (app->precharge_failed) {
-        return BQ_E_STATE; /* until it is no longer wanted */
+    if (app->precharge_failed || bq_app_precharge_overdue(app)) {
+        return refuse(app);
     }
     if (!app->precharging) {
         return begin(app);
@@ -48,20 +62,13 @@ static bq_status close_path(bq_app *app)
     if (passed_ms < app->config.precharge_ms) {
         return BQ_PENDING;
     }
-    if (charged(app, passed_ms)) {
-        app->precharge_ms = app->now_ms;
-        return BQ_OK;
-    }
-    app->precharge_failed = true;
-    bq_app_count(&app->counters.precharge_failures);
-    (void)drive(app, false);
-    return BQ_E_STATE;
+    return charged(app, passed_ms) ? BQ_OK : refuse(app);
 }
 
 static bq_status precharge_step(bq_app *app, bool on)
 {
     if (!on) {
-        app->precharge_failed = false;
+        app->precharge_failed = app->precharge_failed && app->input.request == BQ_REQUEST_ON;
         return drive(app, false);
     }
     if (!app->line_on) {
