@@ -11,8 +11,10 @@
  *         .counter = BQ769X0_CTRL2_CC_EN, .ov_mv = 4250, .uv_mv = 2800, .shunt_uohm = 1000,
  *         .sensor = bq769x0_sensor_codes, .sensor_ctx = &table};
  *
- * The macros take constants. They round as bq769x0_current_codes() and bq769x0_protect3() do, never looser
- * than asked; what those refuse the compiler refuses, as an array of negative size.
+ * The macros take integer constants. They round as bq769x0_current_codes() and bq769x0_protect3() do, never
+ * looser than asked; what those refuse the compiler refuses, as a bit-field of negative width whose name says
+ * what must hold, for example `ocd_mv_is_8_or_more`. All other members are taken as they stand: one that is
+ * left out is 0.
  */
 #ifndef BQHOST_BQ769X0_KNOWN_H
 #define BQHOST_BQ769X0_KNOWN_H
@@ -60,8 +62,9 @@ bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
 
 /* ---- limits as codes --------------------------------------------------------------------------- */
 
-/** 0, or no compilation. */
-#define BQ769X0_MUST(condition) (0u * sizeof(char[(condition) ? 1 : -1]))
+/* What must hold: 0 to be added to a number, or no compilation; and the same as part of a condition. */
+#define BQ769X0_MUST(name, condition) +0u * sizeof(struct { int name : (condition) ? 1 : -1; })
+#define BQ769X0_ALSO(name, condition) &&(condition)
 
 /** Voltage across the shunt in whole mV, fraction dropped. */
 #define BQ769X0_SHUNT_MV(ma, uohm) ((unsigned)((unsigned long long)(ma) * (uohm) / 1000000u))
@@ -101,11 +104,17 @@ bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
 #define BQ769X0_SCD(of, ocd, scd)                                                                            \
     (BQ769X0_COARSE(ocd, scd) ? BQ769X0_SCD_COARSE(of, scd) : BQ769X0_SCD_FINE(of, scd))
 
-/** Whether the part has codes for all of it: thresholds in mV across the shunt, delays in ms, us and s; and
- * the OCD threshold is below the SCD threshold as they will be. */
+/* The part has codes for all of it: thresholds in mV across the shunt, delays in ms, us and s; and the OCD
+ * threshold is below the SCD threshold as they will be. */
+#define BQ769X0_LIMITS(rule, ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s)                                     \
+    rule(ocd_mv_is_8_or_more, (ocd_mv) >= 8u) rule(scd_mv_is_22_or_more, (scd_mv) >= 22u)                    \
+        rule(ocd_ms_is_8_or_more, (ocd_ms) >= 8u) rule(scd_us_is_70_or_more, (scd_us) >= 70u)                \
+            rule(ov_s_is_1_or_more, (ov_s) >= 1u) rule(uv_s_is_1_or_more, (uv_s) >= 1u)                      \
+                rule(ocd_is_below_scd_in_one_range,                                                          \
+                     BQ769X0_OCD(BQ769X0_SUM, ocd_mv, scd_mv) < BQ769X0_SCD(BQ769X0_SUM, ocd_mv, scd_mv))
+/** Whether it is so. */
 #define BQ769X0_FITS(ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s)                                             \
-    ((ocd_mv) >= 8u && (scd_mv) >= 22u && (ocd_ms) >= 8u && (scd_us) >= 70u && (ov_s) >= 1u &&               \
-     (uv_s) >= 1u && BQ769X0_OCD(BQ769X0_SUM, ocd_mv, scd_mv) < BQ769X0_SCD(BQ769X0_SUM, ocd_mv, scd_mv))
+    (true BQ769X0_LIMITS(BQ769X0_ALSO, ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s))
 #define BQ769X0_PROTECT1_OF(ocd_mv, scd_mv, scd_us)                                                          \
     (uint8_t)((BQ769X0_COARSE(ocd_mv, scd_mv) ? 0x80u : 0u) | (BQ769X0_SCD_DELAYS(scd_us) - 1u) << 3 |       \
               (BQ769X0_SCD(BQ769X0_ONE, ocd_mv, scd_mv) - 1u))
@@ -114,18 +123,20 @@ bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
 #define BQ769X0_PROTECT3_OF(ov_s, uv_s)                                                                      \
     (uint8_t)((BQ769X0_UV_DELAYS(uv_s) - 1u) << 6 | (BQ769X0_OV_DELAYS(ov_s) - 1u) << 4)
 
-/** Initialiser of bq769x0_known.registers; `source` is the temperature's, below. */
+/** Initialiser of bq769x0_known.registers; `source` is the temperature's: BQ769X0_THERMISTORS or BQ769X0_DIE,
+ * and bq769x0_known.sensor converts the one or the other. */
 #define BQ769X0_REGISTERS(source, ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s)                                \
     {0,                                                                                                      \
      0,                                                                                                      \
      0,                                                                                                      \
      0,                                                                                                      \
-     (source),                                                                                               \
+     (source)BQ769X0_MUST(source_is_thermistors_or_die,                                                      \
+                          (source) == BQ769X0_THERMISTORS || (source) == BQ769X0_DIE),                       \
      0,                                                                                                      \
      BQ769X0_PROTECT1_OF(ocd_mv, scd_mv, scd_us),                                                            \
      BQ769X0_PROTECT2_OF(ocd_mv, ocd_ms, scd_mv),                                                            \
-     BQ769X0_PROTECT3_OF(ov_s, uv_s) +                                                                       \
-         BQ769X0_MUST(BQ769X0_FITS(ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s)),                             \
+     BQ769X0_PROTECT3_OF(ov_s, uv_s)                                                                         \
+         BQ769X0_LIMITS(BQ769X0_MUST, ocd_mv, ocd_ms, scd_mv, scd_us, ov_s, uv_s),                           \
      0,                                                                                                      \
      0,                                                                                                      \
      BQ769X0_CC_CFG_VALUE}
@@ -138,33 +149,36 @@ bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
      ((w) >> 11 & 1u) + ((w) >> 12 & 1u) + ((w) >> 13 & 1u) + ((w) >> 14 & 1u))
 #define BQ769X0_FED(inputs) (0x4e73u & ((1u << (inputs)) - 1u))
 
-/** Whether a size has these inputs: bottom, second and top input of each group carry a cell (X0-CELL-16). */
+/** Whether a size has these inputs: bottom, second and top input of each group carry a cell (X0-CELL-16); the
+ * datasheet's table for each number of cells: X0-CELL-01 to -15, or bq769x0_wiring(). */
 #define BQ769X0_WIRED(inputs, wiring)                                                                        \
     (((inputs) == 5u || (inputs) == 10u || (inputs) == 15u) && (wiring) >> (inputs) == 0u &&                 \
      ((wiring) & BQ769X0_FED(inputs)) == BQ769X0_FED(inputs))
 
 /** Initialisers of what follows from the size of the part, 5, 10 or 15 inputs, and from those that carry
- * cells, bit n-1 = VCn, as in bq769x0_config.wiring. */
+ * cells, bit n-1 = VCn, as in bq769x0_config.wiring, but never 0. */
 #define BQ769X0_PART(inputs, wiring)                                                                         \
     .first = (inputs) == 15u ? 0u : 15u, .codes = (inputs) == 15u ? 20u : (inputs), .groups = (inputs) / 5u, \
-    .cells = BQ769X0_BITS(wiring), .in_use = (wiring) + BQ769X0_MUST(BQ769X0_WIRED(inputs, wiring))
+    .cells = BQ769X0_BITS(wiring),                                                                           \
+    .in_use = (wiring)BQ769X0_MUST(wiring_is_of_this_size, BQ769X0_WIRED(inputs, wiring))
 
 /** A part that is known. Copied by bq769x0_init_known(). */
 typedef struct bq769x0_known {
-    uint8_t registers[12]; /**< 0x00..0x0b: BQ769X0_REGISTERS(). The trips depend on the device's trim and are
-                              set by configuration */
+    uint8_t registers[12]; /**< 0x00..0x0b: BQ769X0_REGISTERS(); all 0 would be a part that neither measures
+                              nor sees OV and UV. The trips depend on the device's trim and are set by
+                              configuration */
     uint8_t address7;
     bool crc;
     uint8_t first, codes; /**< BQ769X0_PART(): first register of the block of cells, counted from VC1, and its
                              length; 15: the other measurements are fetched apart */
     uint8_t groups, cells;
-    bool invert_current;   /**< the shunt is mounted the other way round */
-    uint8_t counter;       /**< BQ769X0_CTRL2_CC_EN, or 0: coulomb counter off */
-    uint16_t in_use;       /**< BQ769X0_PART() */
-    uint16_t apart;        /**< 0; cells whose lower neighbour may be bled together with them */
-    uint16_t ov_mv, uv_mv; /**< limits of a cell */
-    uint32_t shunt_uohm;   /**< 1..100000 */
-    bq769x0_sensor sensor;
+    bool invert_current;    /**< the shunt is mounted the other way round */
+    uint8_t counter;        /**< BQ769X0_CTRL2_CC_EN, or 0: coulomb counter off */
+    uint16_t in_use;        /**< BQ769X0_PART() */
+    uint16_t apart;         /**< 0; cells whose lower neighbour may be bled together with them */
+    uint16_t ov_mv, uv_mv;  /**< limits of a cell */
+    uint32_t shunt_uohm;    /**< 1..100000, as given to BQ769X0_SHUNT_MV(); it is divided by */
+    bq769x0_sensor sensor;  /**< never NULL */
     const void *sensor_ctx; /**< for `sensor`; both must outlive the instance */
 } bq769x0_known;
 
