@@ -213,16 +213,22 @@ extern const bq_field_table bq769x0_config_fields;
 /* ---- the base set -------------------------------------------------------------------------------
  * For a firmware with little flash: measuring, protecting, balancing. A program that uses only these
  * functions and bq769x0_poll() links nothing of bring-up by probing, fault recovery, scrub, die temperature
- * beside thermistors, charge counting, SHIP, samples for the pack controller. What is then left to the
- * caller: the part must be booted; after a fault it is he who decides when to clear; after a reset of the
- * part (bus errors, no valid picture, BQ_E_VERIFY of outputs that ask for FETs) he configures again. FETs
- * stay off while a fault bit stands.
+ * beside thermistors, charge counting, SHIP, samples for the pack controller, if it is compiled with
+ * -ffunction-sections and linked with --gc-sections. Configure; then measure every 250 ms, look, command the
+ * outputs: see tools/bench/image_afe.c. What is then left to the caller:
+ * - The part must be booted, and its first measurements not be looked at before 250, 400 or 800 ms after that
+ *   (5, 10, 15 inputs; X0-ADC-14). No FET comes on until temperatures are known, 2.25 s after configuration.
+ * - That part and size are the configured ones, and that no cell is an open wire: a cell that is not VALID in
+ *   a valid picture keeps no FET off. Nor does a converter that stands (the same codes for ever).
+ * - After a fault it is he who decides when to clear. FETs stay off while a fault bit stands.
+ * - After a reset of the part (bus errors, no valid picture, BQ_E_VERIFY of outputs that ask for FETs) he
+ *   configures again.
  */
 
 /** Sets up the instance for a part that is known (bq769x0_known.h). `known`, `i2c` and `clock` are copied;
  * what they point to must outlive the instance. Touches no bus. Nothing is checked here: what the macros of
- * bq769x0_known.h made was checked by the compiler. No pointer is null. What is not in this set needs
- * bq769x0_init(). */
+ * bq769x0_known.h made was checked by the compiler, and all else must be there. No pointer is null. What is
+ * not in this set needs bq769x0_init(). */
 void bq769x0_init_known(bq769x0 *d, const bq769x0_known *known, const bq_i2c *i2c, const bq_clock *clock);
 /** Describes a part by a configuration in physical units, for limits that the compiler does not know.
  * `inputs` is 5, 10 or 15; address, CRC option and wiring are given and true; with sensors = 0 `config` must
@@ -243,20 +249,20 @@ bq_status bq769x0_begin_measure(bq769x0 *d);
  * kept. BQ_OK, BQ_E_BUSY, BQ_E_STATE; ends with BQ_OK or a bus error. */
 bq_status bq769x0_begin_clear(bq769x0 *d);
 /** Begins to switch FETs (BQ769X0_CTRL2_CHG_ON, BQ769X0_CTRL2_DSG_ON) and balancing outputs (`cells`, bit n-1
- * = cell n), verified; ends as bq769x0_begin_apply(). Of neighbours that are asked for, one and the other are
- * bled in turns of 4.1 s. Nothing is bled and no FET comes on without a valid picture and a known
- * temperature, nor while a fault stands, but the FET that leads out of OV or UV. BQ_OK, BQ_E_BUSY,
- * BQ_E_STATE. */
+ * = cell n, none above the last), verified; ends as bq769x0_begin_apply(). Of neighbours that are asked for,
+ * one and the other are bled in turns of 4.1 s. Nothing is bled and no FET comes on without a valid picture
+ * and a known temperature, nor while a fault stands, but the FET that leads out of OV or UV. BQ_OK,
+ * BQ_E_BUSY, BQ_E_STATE. */
 bq_status bq769x0_begin_outputs(bq769x0 *d, unsigned fets, unsigned cells);
 
-/** Cell `cell`, counted from 0 at the lowest potential: mV, quality, module 0. Not VALID, and `mv` is the
- * last good value: BQ_Q_COMM, BQ_Q_CHIP, or no bit at all before the first picture. Not VALID: BQ_Q_RANGE,
- * the end of the converter; BQ_Q_OPEN_WIRE, below 0x0518, where the part itself ignores an input. VALID with
- * BQ_Q_OUTSIDE: not within 2 to 5 V. */
+/** Cell `cell`, counted from 0 at the lowest potential and not above the last: mV, quality, module 0. Not
+ * VALID, and `mv` is the last good value: BQ_Q_COMM, BQ_Q_CHIP, or no bit at all before the first picture.
+ * Not VALID: BQ_Q_RANGE, the end of the converter; BQ_Q_OPEN_WIRE, below 0x0518, where the part itself
+ * ignores an input. VALID with BQ_Q_OUTSIDE: not within 2 to 5 V. */
 void bq769x0_read_cell(const bq769x0 *d, unsigned cell, bq_cell_reading *c);
-/** Sensor `sensor`, from 0 on, by the function in bq769x0_known. Not VALID: BQ_Q_COMM, BQ_Q_CHIP (also for
- * the first 2.25 s after configuration), BQ_Q_SENSOR when that function says so. VALID with BQ_Q_OUTSIDE: not
- * within 0.3 to 3 V. */
+/** Sensor `sensor`, from 0 on, one for each group of five inputs, by the function in bq769x0_known. Not
+ * VALID: BQ_Q_COMM, BQ_Q_CHIP (also for the first 2.25 s after configuration), BQ_Q_SENSOR when that function
+ * says so. VALID with BQ_Q_OUTSIDE: not within 0.3 to 3 V. */
 void bq769x0_read_temp(const bq769x0 *d, unsigned sensor, bq_temp_reading *t);
 
 /** What is read beside cells and temperatures. */
