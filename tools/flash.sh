@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes the firmware of a board into it, or prints how.
 # usage: tools/flash.sh BOARD [openocd|st-flash] [--print]
-#   BOARD      lv-f072 or hv-f405, built before: cmake --preset BOARD && cmake --build build/BOARD
+#   BOARD      a folder of hal/boards, for example lv-f072, built before: cmake --preset BOARD && cmake --build build/BOARD
 #   programmer default: the first of openocd and st-flash that is installed; both need an ST-LINK on the board's SWD pins
 #   --print    print the command line instead of running it
 # BUILD=DIR takes the image from another build folder. The settings of the board (the last pages or own sectors) are kept.
@@ -11,14 +11,14 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 board= programmer= print=
 for argument; do
     case $argument in
-    lv-f072 | hv-f405) board=$argument ;;
     openocd | st-flash) programmer=$argument ;;
     --print) print=1 ;;
-    *) echo "flash.sh: unknown argument '$argument'" >&2; sed -n 4,9p "$0" | cut -c 3- >&2; exit 2 ;;
+    *) [ -f "$root/hal/boards/$argument/board.h" ] && board=$argument && continue
+        echo "flash.sh: unknown argument '$argument'" >&2; sed -n 4,8p "$0" | cut -c 3- >&2; exit 2 ;;
     esac
 done
-[ -n "$board" ] || { sed -n 4,9p "$0" | cut -c 3- >&2; exit 2; }
-case $board in lv-f072) target=stm32f0x ;; hv-f405) target=stm32f4x ;; esac
+[ -n "$board" ] || { sed -n 4,8p "$0" | cut -c 3- >&2; exit 2; }
+target=$(sed -n 's/^bqhost_board([^ ]* \(stm32f[0-9]\) .*/\1x/p' "$root/hal/boards/$board/CMakeLists.txt")
 
 image=${BUILD:-$root/build/$board}/$board
 if [ ! -f "$image.bin" ]; then

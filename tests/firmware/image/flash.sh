@@ -26,7 +26,9 @@ expect() { # expect STATUS PATTERN ARGUMENT...
 expect 0 '^openocd -f interface/stlink.cfg -f target/stm32f0x.cfg -c "program .*/lv-f072.elf verify reset exit"' lv-f072 openocd --print
 expect 0 '^st-flash --reset write .*/lv-f072.bin 0x08000000' lv-f072 st-flash --print
 expect 2 "unknown argument 'lv-f071'" lv-f071
-expect 2 usage
+expect 2 '^BUILD=DIR .* kept.$'
+[ "$(sh "$tool" 2>&1 | tail -n 1 | cut -c 1-9)" = BUILD=DIR ] || { echo "FAILED: usage ends in something else"; failed=1; }
+expect 2 "unknown argument '\.'" .
 expect 1 'no .*/hv-f405.bin; build it: cmake --preset hv-f405' hv-f405 --print
 PATH=$(dirname "$(command -v python3)"):/bin
 command -v openocd >/dev/null || command -v st-flash >/dev/null || expect 1 'neither openocd nor st-flash is installed' lv-f072
@@ -42,6 +44,8 @@ image[len(image) // 2] ^= 0x40
 with open(sys.argv[2], "wb") as file:
     file.write(image)
 END
+cp "$BUILD/lv-f072.bin" "$scratch/hv-f405.bin"
 BUILD=$scratch
+expect 0 'target/stm32f4x.cfg' hv-f405 openocd --print
 expect 1 'CRC .* header says' lv-f072 openocd --print
 exit $failed
