@@ -112,9 +112,9 @@ static void read_line(ps_console *c)
     }
 }
 
-static void take_line(ps_console *c, uint64_t now, bool idle)
+static void take_line(ps_console *c, uint64_t now)
 {
-    if (!idle || c->taken < c->len) {
+    if (!c->prompted) {
         return;
     }
     if (!c->waiting && !c->ended) {
@@ -127,16 +127,26 @@ static void take_line(ps_console *c, uint64_t now, bool idle)
             c->line[c->len++] = '\n'; /* the last line may lack it */
         }
         c->taken = 0;
-        c->waiting = false;
+        c->waiting = c->prompted = false;
     }
+}
+
+/* Whether the last that was seen is a prompt, "> " at the beginning of a row: what was typed is answered. */
+static void look_for_prompt(ps_console *c, uint8_t byte)
+{
+    static const char prompt[] = "\n> ";
+    c->matched = byte == (uint8_t)prompt[c->matched] ? c->matched + 1u : byte == '\n' ? 1u : 0u;
+    c->prompted = c->matched == sizeof prompt - 1u;
+    c->matched %= sizeof prompt - 1u;
 }
 
 /* ---- both ---------------------------------------------------------------------------------------------- */
 
 static size_t stream_write(void *ctx, const uint8_t *data, size_t len)
 {
-    const ps_console *c = ctx;
+    ps_console *c = ctx;
     for (size_t i = 0; i < len; i++) {
+        look_for_prompt(c, data[i]);
         if (c->terminal || data[i] != '\r') {
             (void)putchar(data[i]);
         }
@@ -175,10 +185,10 @@ void ps_console_close(ps_console *c)
     c->terminal = false;
 }
 
-void ps_console_turn(ps_console *c, uint64_t now, bool idle)
+void ps_console_turn(ps_console *c, uint64_t now)
 {
     if (!c->terminal) {
-        take_line(c, now, idle);
+        take_line(c, now);
         return;
     }
     keep_pace(c, now);

@@ -23,14 +23,16 @@ typedef struct ps_console {
     char ahead[256]; /* a line that waits for its time */
     uint64_t due;    /* that time */
     bool waiting, ended;
+    unsigned matched; /* so much of a prompt was seen */
+    bool prompted;    /* the last that was seen is a prompt */
 } ps_console;
 
 /** A terminal is set to raw mode until the program ends. */
 void ps_console_open(ps_console *c);
 void ps_console_close(ps_console *c);
 /** Before a pass of the firmware at the simulated time `now`: waits for the wall clock (terminal), takes
- * keys. `idle`: the firmware's console has answered everything. */
-void ps_console_turn(ps_console *c, uint64_t now, bool idle);
+ * keys. */
+void ps_console_turn(ps_console *c, uint64_t now);
 /** What the firmware's board offers. `c` must outlive it. */
 bq_stream ps_console_stream(ps_console *c);
 

@@ -5,6 +5,8 @@
 #include "ps_mirror.h"
 #include "ps_wires.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -191,10 +193,53 @@ static const ps_wires *wires_of(const ps_rig *r)
     return r->s->part != NULL ? &ps_lv_f072 : &ps_hv_f405;
 }
 
+static uint32_t word_at(const uint8_t *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+/* The board that an image names behind its vectors, "BQIM" and three words before the name; NULL: none. */
+static const char *board_of(const uint8_t *head, size_t n)
+{
+    for (size_t at = 0; at + 32u <= n; at += 4u) {
+        if (memcmp(head + at, "BQIM", 4) == 0) {
+            return (const char *)head + at + 16;
+        }
+    }
+    return NULL;
+}
+
+/* What is no firmware, or one for the other board, would do nothing for the whole scenario. */
+static int look_at_image(const ps_rig *r, ps_error *e)
+{
+    const ps_place at = {r->image, 0};
+    const ps_wires *mine = r->emulation->wires, *other = mine == &ps_lv_f072 ? &ps_hv_f405 : &ps_lv_f072;
+    uint8_t head[1024];
+    FILE *f = fopen(r->image, "rb");
+    if (f == NULL) {
+        return ps_fail(e, at, "%s", strerror(errno));
+    }
+    size_t n = fread(head, 1, sizeof head, f);
+    (void)fclose(f);
+    /* the stack begins in RAM, the program in flash, with the bit of Thumb */
+    if (n < 8u || word_at(head) % 4u != 0u || word_at(head) - 0x10000000u >= 0x20000000u ||
+        word_at(head + 4) >> 20 != 0x080u || word_at(head + 4) % 2u != 1u) {
+        return ps_fail(e, at, "no firmware: it does not begin with a stack pointer and a reset vector");
+    }
+    const char *board = board_of(head, n);
+    if (board != NULL && strncmp(board, other->board, 16) == 0) {
+        return ps_fail(e, at, "an image of %s; this pack needs the board %s", other->board, mine->board);
+    }
+    return 0;
+}
+
 static int power_up(ps_rig *r, ps_error *e)
 {
     ps_emulation *m = r->emulation;
     const ps_place at = {r->image, 0};
+    if (look_at_image(r, e) != 0) {
+        return -1;
+    }
     const emu_world world = world_of(r, m->wires);
     m->e = emu_create(m->wires->chip, &world);
     if (m->e == NULL) {
@@ -204,7 +249,7 @@ static int power_up(ps_rig *r, ps_error *e)
         return ps_fail(e, at, "--image needs the emulator, built without");
     }
     if (!emu_load_file(m->e, r->image)) {
-        return ps_fail(e, at, "no image for the flash of %s", m->wires->board);
+        return ps_fail(e, at, "does not fit into the flash of %s", m->wires->board);
     }
     if (configure(r, e) != 0) {
         return -1;

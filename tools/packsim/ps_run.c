@@ -236,7 +236,7 @@ static bool keys(ps_run *u, uint64_t now)
     if (u->console == NULL) {
         return true;
     }
-    ps_console_turn(u->console, now, bq_console_idle(&u->rig->fw.firmware.console));
+    ps_console_turn(u->console, now);
     return !u->console->left;
 }
 

@@ -209,6 +209,10 @@ option_refused 'needs an argument' good.ini --csv
 option_refused 'not a time' good.ini --duration 10
 option_refused 'needs --image' good.ini --costs costs
 option_refused 'not an address' good.ini --image none.bin --loop here
+option_refused 'No such file' good.ini --image none.bin
+option_refused 'no firmware' good.ini --image good.ini
+printf '\000\040\000\040\001\001\000\010BQIM............lv-f072\0........' >other.bin
+option_refused 'an image of lv-f072; this pack needs the board hv-f405' good.ini --image other.bin
 option_refused 'not a whole number' good.ini --seed x
 option_refused 'more than one' good.ini good.ini
 option_refused 'no scenario' --quiet
