@@ -16,7 +16,7 @@ static void test_every_status_has_its_own_name(void)
 #define NAMED(s)                                                                                             \
     do {                                                                                                     \
         TEST_ASSERT_EQUAL_STRING(#s, bq_status_name(s));                                                     \
-        TEST_ASSERT_EQUAL_STRING(#s + ((s) < 0 ? strlen("BQ_E_") : strlen("BQ_")), bq_status_word(s));       \
+        TEST_ASSERT_EQUAL_STRING(&#s[(s) < 0 ? strlen("BQ_E_") : strlen("BQ_")], bq_status_word(s));         \
     } while (0)
     NAMED(BQ_OK);
     NAMED(BQ_PENDING);
