@@ -74,7 +74,12 @@ int x0_job_configure(bq769x0 *d, bq769x0_frame *f)
 
 bq_status bq769x0_begin_configure(bq769x0 *d)
 {
-    bq_status st = x0_begin(d, X0_STATE_NONE, x0_job_configure);
+    bq_status st;
+    if ((d->known.registers[BQ769X0_SYS_CTRL1] & BQ769X0_CTRL1_ADC_EN) == 0u || d->known.shunt_uohm == 0u ||
+        d->known.sensor == NULL) {
+        return BQ_E_CONFIG;
+    }
+    st = x0_begin(d, X0_STATE_NONE, x0_job_configure);
     if (st == BQ_OK) {
         d->known.registers[BQ769X0_SYS_CTRL2] = 0;
     }

@@ -239,7 +239,8 @@ bq_status bq769x0_known_of(const bq769x0_config *config, bq769x0_known *known);
 /** Begins configuration of a part that is awake: trim, limits in this device's codes, FETs and balancing off,
  * converters on; every register read back. Ends with BQ_OK; BQ_E_NO_CODE (a voltage limit this device cannot
  * hold); BQ_E_VERIFY; BQ_E_IMPLAUSIBLE (the trim reads differently each time); a bus error. Legal in every
- * state; BQ_E_BUSY while a job runs. */
+ * state; BQ_E_BUSY while a job runs. BQ_E_CONFIG: `known` lacks its registers (without converter nothing
+ * protects), the shunt or the sensor; nothing was begun, and nothing else is legal. */
 bq_status bq769x0_begin_configure(bq769x0 *d);
 /** Begins one measurement: three transactions, four on parts of less than 15 inputs. The faults that SYS_STAT
  * reports stand until a later measurement reads them as gone. Ends with BQ_OK, also when the picture was

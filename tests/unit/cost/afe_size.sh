@@ -5,7 +5,7 @@ set -eu
 part=$1
 tool=$2
 scratch=$4
-limit=2666 # bytes of the base set: what was reached
+limit=2690 # bytes of the base set: what was reached
 
 [ "$part" = canary ] || exec sh "$tool" $limit
 command -v arm-none-eabi-gcc >/dev/null || { echo "SKIPPED: arm-none-eabi-gcc is needed"; exit 77; }

@@ -292,6 +292,29 @@ static void test_a_part_that_is_a_constant(void)
     rig_clean();
 }
 
+/* A part described by hand with something left out: measured without converter it would look healthy. */
+static void test_a_part_half_described_is_not_configured(void)
+{
+    bq769x0_known whole;
+    awake("bq7694003", 15);
+    TEST_ASSERT_EQUAL(BQ_OK, bq769x0_known_of(&rig.config, &whole));
+    for (int left_out = 0; left_out < 4; left_out++) {
+        bq_i2c i2c = hal_sim_x0_i2c(&rig.hal);
+        bq_clock clock = hal_sim_x0_clock(&rig.hal);
+        bq769x0_known known = whole;
+        if (left_out == 0) {
+            memset(known.registers, 0, sizeof known.registers);
+        } else if (left_out == 1) {
+            known.shunt_uohm = 0;
+        } else if (left_out == 2) {
+            known.sensor = NULL;
+        }
+        bq769x0_init_known(&rig.d, &known, &i2c, &clock);
+        TEST_ASSERT_EQUAL(left_out < 3 ? BQ_E_CONFIG : BQ_OK, configure());
+        TEST_ASSERT_EQUAL(left_out < 3 ? BQ_E_STATE : BQ_OK, bq769x0_begin_outputs(&rig.d, 0, 0));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -302,5 +325,6 @@ int main(void)
     RUN_TEST(test_nothing_is_on_before_a_temperature_is_known);
     RUN_TEST(test_the_die_as_the_source);
     RUN_TEST(test_a_part_that_is_a_constant);
+    RUN_TEST(test_a_part_half_described_is_not_configured);
     return UNITY_END();
 }
