@@ -139,7 +139,7 @@ typedef struct stm32_can_regs {
 #define STM32_CAN_TSR_RQCP(n) (1u << (8u * (n))) /* write 1 to clear, with it TXOK, ALST, TERR */
 #define STM32_CAN_TSR_ABRQ(n) (1u << (8u * (n) + 7u))
 #define STM32_CAN_TSR_TME(n) (1u << (26u + (n)))
-#define STM32_CAN_TSR_CODE_SHIFT 24 /* number of the next free mailbox while one is empty */
+#define STM32_CAN_TSR_CODE_SHIFT 24 /* number of the mailbox that is filled next, while one is empty */
 #define STM32_CAN_RF0R_FMP 3u
 #define STM32_CAN_RF0R_FULL (1u << 3) /* write 1 to clear */
 #define STM32_CAN_RF0R_FOVR (1u << 4) /* write 1 to clear */

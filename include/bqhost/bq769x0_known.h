@@ -30,8 +30,7 @@ extern "C" {
 /* ---- temperatures ------------------------------------------------------------------------------ */
 
 /** From a code of TS1..TS3 to tenths of a degree C. False: the sensor is open, shorted or outside its table,
- * and
- * `*dc` may be as before. */
+ * and `*dc` may be as before. */
 typedef bool (*bq769x0_sensor)(const void *ctx, uint16_t code, int16_t *dc);
 
 /** A thermistor by the codes that it gives at equally spaced temperatures: the smallest way. */
@@ -164,9 +163,9 @@ bool bq769x0_sensor_die(const void *v25_uv, uint16_t code, int16_t *dc);
 
 /** A part that is known. Copied by bq769x0_init_known(). */
 typedef struct bq769x0_known {
-    uint8_t registers[12]; /**< 0x00..0x0b: BQ769X0_REGISTERS(); all 0 would be a part that neither measures
-                              nor sees OV and UV. The trips depend on the device's trim and are set by
-                              configuration */
+    uint8_t registers[12]; /**< 0x00..0x0b: BQ769X0_REGISTERS(); all 0, a part that neither measures nor
+                              sees OV and UV, is refused by configuration. The trips depend on the device's
+                              trim and are set by configuration */
     uint8_t address7;
     bool crc;
     uint8_t first, codes; /**< BQ769X0_PART(): first register of the block of cells, counted from VC1, and its

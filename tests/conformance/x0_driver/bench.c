@@ -396,6 +396,17 @@ uint32_t bench_until(bool chg, bool dsg, uint32_t limit)
     }
 }
 
+uint32_t bench_until_on(uint32_t limit, uint32_t period)
+{
+    uint64_t from = b.chip.now;
+    while (b.chip.now < from + limit * MS) {
+        bench_serve(period, period);
+        if (sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip))
+            break;
+    }
+    return (uint32_t)((b.chip.now - from) / MS);
+}
+
 void bench_wait(double ms)
 {
     sim_x0_advance(&b.chip, (uint64_t)(ms * 1e6));

@@ -8,8 +8,8 @@
 #define BENCH_H
 
 #include "bqhost/bq769x0.h"
-#include "bqhost/thermistor.h"
 #include "bqhost/bq769x0_regs.h"
+#include "bqhost/thermistor.h"
 #include "sim_x0.h"
 #include "unity.h"
 #include <string.h>
@@ -100,6 +100,8 @@ bq_status bench_apply(bool charge, bool discharge, uint32_t balance);
 void bench_serve(uint32_t ms, uint32_t period);
 /** Scan and apply until CHG and DSG pins are as wanted; ms passed, or `limit` when they never are. */
 uint32_t bench_until(bool chg, bool dsg, uint32_t limit);
+/** Scan and apply every `period` ms, at least once, until both pins are on; ms passed, `limit` when never. */
+uint32_t bench_until_on(uint32_t limit, uint32_t period);
 void bench_wait(double ms);
 bq_status bench_picture(void);
 uint64_t bench_now_ms(void);

@@ -29,13 +29,7 @@ static void on_duty(const char *name)
 
 static uint32_t until_on(uint32_t limit)
 {
-    uint64_t from = b.chip.now;
-    while (b.chip.now < from + limit * MS) {
-        bench_serve(PERIOD, PERIOD);
-        if (sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip))
-            break;
-    }
-    return (uint32_t)((b.chip.now - from) / MS);
+    return bench_until_on(limit, PERIOD);
 }
 
 /* proves: X0-SEQ-35, X0-XRDY-03, X0-XRDY-04, X0-TIM-15, X0-AMB-65, X0-AMB-66, X0-AMB-104, X0-SEQ-41 */

@@ -15,11 +15,7 @@ void tearDown(void)
 
 static bool both_on(uint32_t ms)
 {
-    const uint64_t from = b.chip.now;
-    while (b.chip.now < from + ms * MS && !(sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip))) {
-        bench_serve(PERIOD, PERIOD);
-    }
-    return sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip);
+    return bench_until_on(ms, PERIOD) < ms;
 }
 
 static void short_circuit(void)

@@ -27,13 +27,7 @@ static void on_duty(const char *name)
 /* ms until both pins are on, at PERIOD; `limit` if never */
 static uint32_t until_on(uint32_t limit)
 {
-    uint64_t from = b.chip.now;
-    while (b.chip.now < from + limit * MS) {
-        bench_serve(PERIOD, PERIOD);
-        if (sim_x0_chg(&b.chip) && sim_x0_dsg(&b.chip))
-            break;
-    }
-    return (uint32_t)((b.chip.now - from) / MS);
+    return bench_until_on(limit, PERIOD);
 }
 
 static uint32_t until_set(uint8_t bit, uint32_t limit)
